@@ -23,6 +23,7 @@ Reader = Callable[[str, Any], Any]
 
 def checked(call: Callable[P, R]) -> Callable[P, R]:
     """Return ``call`` with its arguments checked first; names in any iterable reach it as a tuple.
+
     The result raises UsageError for a wrong argument: it names the call, the argument and what to
     write. An annotation that is not in ``READERS`` is a KeyError where ``checked`` is used."""
     takes, title = signature(call), f"{call.__qualname__}()"
@@ -45,7 +46,7 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
         # inspect takes longer to bind arguments than all readers do: most calls do not need it.
         if len(values) == len(args) + len(kwargs) and needed <= values.keys() <= names:
             read = {name: readers[name](f"{title}: {name}", it) for name, it in values.items()}
-            return _called_with(call, read)
+            return _call_with(call, read)
         given = _bound(takes, title, args, kwargs)
         for name, value in given.arguments.items():
             given.arguments[name] = readers[name](f"{title}: {name}", value)
@@ -54,11 +55,12 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
     return run
 
 
-def _called_with(call: Callable[..., R], values: Mapping[str, Any]) -> R:
+def _call_with(call: Callable[..., R], values: Mapping[str, Any]) -> R:
     return call(**values)
 
 
 def _bound(takes: Signature, title: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
+    """Return the arguments bound to their names; raises UsageError where they do not fit."""
     known = [name for name in takes.parameters if name != "self"]
     for name in kwargs:
         if name not in known:
@@ -74,7 +76,7 @@ def _reader_of_list(read: Reader) -> Reader:
     return lambda what, values: tuple(read(f"{what}[{at}]", it) for at, it in enumerate(values))
 
 
-def _or_none(read: Reader) -> Reader:
+def _reader_or_none(read: Reader) -> Reader:
     return lambda what, value: None if value is None else read(what, value)
 
 
@@ -85,6 +87,7 @@ def _type_error(what: str, value: object, write: str) -> UsageError:
 
 
 def _text(what: str, value: object) -> object:
+    """Return the value; raises UsageError unless it is a str."""
     if isinstance(value, str):
         return value
     plain = isinstance(value, bool | int | float)
@@ -92,6 +95,7 @@ def _text(what: str, value: object) -> object:
 
 
 def _names(what: str, value: object) -> object:
+    """Return a tuple of texts; raises UsageError for one text, or what is no list of texts."""
     if isinstance(value, str):
         words = value.replace(",", " ").split()
         raise _type_error(what, value, f"write {words or [value]!r}")
@@ -101,12 +105,14 @@ def _names(what: str, value: object) -> object:
 
 
 def _records(what: str, value: object) -> object:
+    """Return a tuple of the values; raises UsageError unless the value is a list."""
     if isinstance(value, Iterable) and not isinstance(value, str | bytes | bytearray | Mapping):
         return tuple(value)
     raise _type_error(what, value, "write a list")
 
 
 def _texts_by_name(what: str, value: object) -> object:
+    """Return a dict of texts by text; raises UsageError for any other value."""
     if not isinstance(value, Mapping):
         raise _type_error(what, value, "write a dict of str")
     for key in value:
@@ -114,7 +120,8 @@ def _texts_by_name(what: str, value: object) -> object:
     return {key: _text(f"{what}[{key!r}]", it) for key, it in value.items()}
 
 
-def _switch(what: str, value: object) -> object:
+def _bool(what: str, value: object) -> object:
+    """Return the value; raises UsageError unless it is a bool."""
     if isinstance(value, bool):
         return value
     raise _type_error(what, value, "write True or False")
@@ -128,6 +135,7 @@ def _int(what: str, value: object) -> object:
 
 
 def _path(what: str, value: object) -> object:
+    """Return the value; raises UsageError unless it is a path, but not one of bytes."""
     # A path of bytes would fail where it is put into a message.
     if isinstance(value, str | os.PathLike) and isinstance(os.fspath(value), str):
         return value
@@ -135,6 +143,8 @@ def _path(what: str, value: object) -> object:
 
 
 def _path_or(other: type, write: str) -> Reader:
+    """Return a reader of a path or a value of the type ``other``."""
+
     def read(what: str, value: object) -> object:
         if isinstance(value, other):
             return value
@@ -162,13 +172,13 @@ _SOURCE = _path_or(bytes, "write a path, XML text or bytes")
 READERS: Mapping[str, Reader] = {
     "str | os.PathLike[str] | Mapping[str, Any]": _path_or(Mapping, "write a path, or a dict"),
     "str": _text,
-    "str | None": _or_none(_text),
-    "bool": _switch,
+    "str | None": _reader_or_none(_text),
+    "bool": _bool,
     "int": _int,
     "Iterable[str]": _names,
     "Iterable[Part]": _records,
-    "Mapping[str, str] | None": _or_none(_texts_by_name),
+    "Mapping[str, str] | None": _reader_or_none(_texts_by_name),
     "str | os.PathLike[str]": _path,
     "Source": _source,
-    "Source | None": _or_none(_source),
+    "Source | None": _reader_or_none(_source),
 }

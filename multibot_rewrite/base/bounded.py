@@ -61,8 +61,7 @@ _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
-    """Return the bytes of a file, which may be a device without an end. Raises OSError, also for a file
-    that is too large or a pipe in a folder, and ValueError for a path that no system takes."""
+    """Return the bytes of a file or device; raises OSError (also if too large) and ValueError."""
     _refuse_pipe(path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.
@@ -118,37 +117,35 @@ def compose_yaml(text: str, file: str, remedy: str = CORRECT) -> yaml.Node | Non
     """Return PyYAML's node of the one document; raises InputError with the place in ``file``."""
     import yaml
 
-    node: yaml.Node | None = _within_bounds(
+    node: yaml.Node | None = _parsed_within_bounds(
         partial(yaml.compose, Loader=_loader()), text, file, remedy
     )
     return node
 
 
 def compose_own_yaml(text: str) -> yaml.Node | None:
-    """Return the root node of a YAML text of this package, without limits for its size. All values but
-    booleans and null are text."""
+    """Return the root node of YAML of this package: no limits; all but booleans and null is text."""
     import yaml
 
     return yaml.compose(text, Loader=_plain_loader())
 
 
 def load_yaml(text: str, file: str, remedy: str = CORRECT) -> Any:
-    """Return the value of the one document; raises InputError with the place in ``file``, also for an
-    unknown tag and for a value that Python does not have."""
+    """Return the value of the one document; raises InputError with the place in ``file``."""
     import yaml
 
-    return _within_bounds(partial(yaml.load, Loader=_loader()), text, file, remedy)
+    return _parsed_within_bounds(partial(yaml.load, Loader=_loader()), text, file, remedy)
 
 
 def load_own_yaml(module: str, name: str) -> Any:
-    """Return the value of a YAML file of this package, whose bounds are not checked; ``module`` is the
-    ``__file__`` next to it."""
+    """Return the value of a YAML file of this package, next to ``module``, without limits."""
     import yaml
 
     return yaml.load(own_text(module, name), _loader())
 
 
-def _within_bounds(parse: Callable[[str], Any], text: str, file: str, remedy: str) -> Any:
+def _parsed_within_bounds(parse: Callable[[str], Any], text: str, file: str, remedy: str) -> Any:
+    """Return what ``parse`` makes of a YAML text; raises InputError if it is wrong or too large."""
     import yaml
 
     try:
@@ -175,10 +172,7 @@ def _yaml_fault(error: Exception, text: str, file: str, remedy: str) -> str:
 
 
 def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None = None) -> Any:
-    """Return the value of a JSON text; raises json.JSONDecodeError, UnicodeDecodeError.
-
-    ``made`` replaces each object, the innermost first.
-    """
+    """Return the value of a JSON text, with ``made`` for each object; raises JSONDecodeError."""
     import json
 
     raw = data if isinstance(data, bytes) else data.encode("utf-8", "surrogatepass")
@@ -243,6 +237,7 @@ def _plain_loader() -> type[yaml.SafeLoader]:
 
 
 def _with_digit_limit(construct: Any, kind: str) -> Any:
+    """Return a YAML constructor that raises ConstructorError for a wrong or too long value."""
     from yaml.constructor import ConstructorError
 
     def checked(loader: Any, node: yaml.Node) -> Any:
@@ -275,22 +270,24 @@ def _check_bounds(text: str) -> None:
         if isinstance(event, yaml.CollectionStartEvent):
             above.append((event.anchor, count))
             if len(above) > MAX_DEPTH:
-                _refuse(event, f"it is nested deeper than {MAX_DEPTH} levels")
+                _raise_composer_error(event, f"it is nested deeper than {MAX_DEPTH} levels")
         elif isinstance(event, yaml.CollectionEndEvent):
             anchor, before = above.pop()
             if anchor is not None:
                 anchored[anchor] = count - before
         elif isinstance(event, yaml.AliasEvent):
             if any(event.anchor == anchor for anchor, _ in above):
-                _refuse(event, "the alias is inside the value that it repeats")
+                _raise_composer_error(event, "the alias is inside the value that it repeats")
             repeated += anchored.get(event.anchor, 1)
             count += anchored.get(event.anchor, 1)
             if repeated > MAX_REPEATED:
-                _refuse(event, f"the aliases stand for more than {MAX_REPEATED:,} values")
+                _raise_composer_error(
+                    event, f"the aliases stand for more than {MAX_REPEATED:,} values"
+                )
         count += isinstance(event, yaml.NodeEvent)
 
 
-def _refuse(event: yaml.Event, problem: str) -> NoReturn:
+def _raise_composer_error(event: yaml.Event, problem: str) -> NoReturn:
     from yaml.composer import ComposerError
 
     raise ComposerError(None, None, problem, event.start_mark)  # type: ignore[arg-type]

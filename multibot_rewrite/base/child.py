@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Child processes: the only place that says how one is started.
-
-A child of Python finds modules where this process does, but for the current folder; git runs nothing
-that a repository's own configuration names.
-"""
+"""Child processes: how each is started, without modules of the current folder or git's hooks."""
 
 from __future__ import annotations
 
@@ -68,12 +64,10 @@ def variables(given: Mapping[str, str] = os.environ) -> dict[str, str]:
 
 
 def git(where: str, *words: str, given: bytes = b"") -> bytes:
-    """Return what git prints in a folder, with ``given`` as its standard input.
+    """Return what git prints in a folder, with ``given`` as its input; runs nothing of the repository.
 
-    Raises OSError, subprocess.CalledProcessError. No hook, monitor, pager, filter or other program of
-    the repository is run. Of a submodule this holds only where git is asked in its folder: its filters
-    are its own.
-    """
+    Raises OSError, subprocess.CalledProcessError. Of a submodule this holds only where git is asked
+    in its folder: its filters are its own."""
     try:
         listed = _git(where, {}, ("config", "--null", "--name-only", "--get-regexp", _FILTERS))
     except subprocess.CalledProcessError:  # it has none, or is no repository
@@ -85,6 +79,7 @@ def git(where: str, *words: str, given: bytes = b"") -> bytes:
 
 
 def _git(where: str, more: Mapping[str, str], words: Sequence[str], given: bytes = b"") -> bytes:
+    """Return what git prints, with ``more`` settings than those that switch hooks and the like off."""
     settings = [part for it in {**_QUIET, **more}.items() for part in ("-c", "=".join(it))]
     command = ["git", "-C", where, "--no-pager", *settings, *words]
     environ = {**os.environ, **_ALONE}

@@ -63,6 +63,7 @@ def read(path: str) -> bytes:
 
 
 def _table(project: str, data: bytes) -> dict[str, object]:
+    """Return the table of this package in a pyproject.toml; raises UsageError for a wrong one."""
     tool = parse(project, data).get("tool", {})
     tool = tool if isinstance(tool, dict) else {}
     if "multibot_rewrite" in tool:

@@ -18,8 +18,7 @@ FLEET, NODES, PLAN, LINT = (
 
 
 def schema_line(schema: str) -> str:
-    """Return the comment by which yaml-language-server (VS Code, Vim, Emacs) finds the schema next to a
-    file, which is there on every machine that has the file."""
+    """Return the comment by which yaml-language-server finds the schema next to a file."""
     return f"# yaml-language-server: $schema={schema_name(schema)}"
 
 

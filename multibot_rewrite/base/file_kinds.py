@@ -63,8 +63,7 @@ def recognised(data: bytes) -> str:
 
 
 def refuse_others(data: bytes, file: str, *wanted: str) -> None:
-    """Raise InputError that names the kind of a file and the command for it, unless it is of a wanted
-    kind or of no known one."""
+    """Raise InputError, with the command to use, for a file of a known kind that is not ``wanted``."""
     kind = recognised(data)
     if kind and kind not in wanted:
         raise InputError(f"{file}: {KINDS[kind].words}; {KINDS[kind].use}")

@@ -40,10 +40,7 @@ def dicts_by_key(
 
 
 def chain_ends(next_of: Mapping[str, str]) -> dict[str, str]:
-    """Return what each name leads to in the end; an empty string for one that leads into a circle.
-
-    Each name is passed once, however long the chains are.
-    """
+    """Return what each name leads to in the end; empty for one that leads into a circle."""
     ends: dict[str, str] = {}
     for start in next_of:
         passed: dict[str, None] = {}

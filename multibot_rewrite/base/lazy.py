@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Regular expressions that are compiled when first used, since a run needs only few of them, and parts
-of patterns that read XML, Python and substitutions, each in linear time.
+"""Regular expressions compiled at first use, and patterns that take linear time.
 
-A search for something without an end would start again at the next place that looks like its start.
-What has no end therefore goes to the end of the text, or stops where the next one starts.
+A run needs only few expressions. The parts of patterns read XML, Python and substitutions. A search
+for something without an end would start again at the next place that looks like its start: what has
+no end therefore goes to the end of the text, or stops where the next one starts.
 
-Besides: no garbage collection while very many records are made.
-"""
+Besides: no garbage collection while very many records are made."""
 
 from __future__ import annotations
 
@@ -55,12 +54,7 @@ def without_comments(source: bytes) -> bytes:
 
 
 def with_gaps(pieces: Sequence[str], gap: str) -> str:
-    """Return a pattern for whole texts that have the pieces in this order, with one or more of the
-    characters ``gap`` between each two.
-
-    Each piece is taken where it comes first, and no other place is tried: what lies between it and the
-    next one can always be longer.
-    """
+    """Return a pattern for texts of the pieces, each taken at its first place, ``gap`` between them."""
     first, *others = pieces
     *middle, last = others or [""]
     taken = (rf"(?=(?P<_{at}>{gap}+?{re.escape(it)}))(?P=_{at})" for at, it in enumerate(middle))
@@ -70,8 +64,7 @@ def with_gaps(pieces: Sequence[str], gap: str) -> str:
 
 @contextmanager
 def gc_paused() -> Iterator[None]:
-    """Stop the garbage collector in the block: of a million fresh records none is garbage, and
-    checking them again and again takes twice as long as making them."""
+    """Stop the garbage collector in the block: it would double the time of making many records."""
     on = gc.isenabled()
     gc.disable()
     try:

@@ -35,10 +35,7 @@ def source_folders(above: str, names: Iterable[str]) -> list[str]:
 
 
 def ignored_by_git(paths: Iterable[str]) -> set[str]:
-    """Return the paths that git ignores in the work tree that each is in; a tracked file never is.
-
-    What is in no work tree is not ignored, and nothing is where git cannot be run.
-    """
+    """Return the paths that git ignores in their work trees; none without git or outside of one."""
     trees: dict[str, list[str]] = defaultdict(list)
     for path in paths:
         if tree := _work_tree(os.path.dirname(os.path.abspath(path))):

@@ -48,10 +48,9 @@ class SiteRow(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """One value of a document that a site claims. ``attribute`` is empty for element text.
+    """One value of a document that a site claims; ``attribute`` is empty for element text.
 
-    ``start`` is the byte offset of the element's start tag; ``value`` is the parsed value.
-    """
+    ``start`` is the byte offset of the element's start tag; ``value`` is the parsed value."""
 
     site: SiteRow
     element: "_Element"
@@ -63,8 +62,7 @@ class Claim(NamedTuple):
 class Edit(NamedTuple):
     """Replace source bytes ``start:end`` by ``before + robot + after``.
 
-    ``after`` is None where the new text does not hold the robot's name (``before`` is all of it).
-    """
+    ``after`` is None where the new text does not hold the robot's name (``before`` is all of it)."""
 
     start: int
     end: int

@@ -116,12 +116,13 @@ class Naming(NamedTuple):
         return self.layout._replace(namespaced=self.topics == NAMESPACE)
 
 
-def leaves(world_systems: str | None, robots: Sequence[str]) -> bool:
-    """Return whether world systems are left to the world. By default those of several robots are:
-    each would be loaded twice. Raises UsageError for an unknown word."""
+def leaves_world_systems(world_systems: str | None, robots: Sequence[str]) -> bool:
+    """Return whether world systems are left to the world; raises UsageError.
+
+    By default those of several robots are: each robot would load them again."""
     if world_systems is None:
         return len(robots) > 1
-    _one_of("world_systems", world_systems, WORLD_SYSTEMS)
+    _refuse_unknown("world_systems", world_systems, WORLD_SYSTEMS)
     return world_systems == LEAVE
 
 
@@ -145,11 +146,11 @@ def make_naming(
     chosen = find_layout(layout)
     usual = PREFIX if chosen.at_run_time else POSTFIX
     side = usual if affix is None else affix
-    _one_of("affix", side, (POSTFIX, PREFIX))
+    _refuse_unknown("affix", side, (POSTFIX, PREFIX))
     strategy = topics or (NAMESPACE if chosen.namespaced else side)
-    _one_of("topics", strategy, (POSTFIX, PREFIX, NAMESPACE))
-    _one_of("groups", groups, ("keep", "rename"))
-    active = _active(chosen, strategy, _separators(separators or {}))
+    _refuse_unknown("topics", strategy, (POSTFIX, PREFIX, NAMESPACE))
+    _refuse_unknown("groups", groups, ("keep", "rename"))
+    active = _active_separators(chosen, strategy, _separators(separators or {}))
     if groups == "keep":
         active.pop("group", None)
     if chosen.at_run_time and (side != PREFIX or active["frame"] != "/"):
@@ -171,11 +172,12 @@ def find_layout(word: str) -> Layout:
     """Return the layout called ``word``; raises UsageError with the names of all layouts."""
     known = {name: it for it in LAYOUTS for name in (it.name, it.short)}
     if word not in known:
-        _one_of("layout", word, tuple(it.name for it in LAYOUTS))
+        _refuse_unknown("layout", word, tuple(it.name for it in LAYOUTS))
     return known[word]
 
 
-def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
+def _refuse_unknown(what: str, word: str, allowed: tuple[str, ...]) -> None:
+    """Raise UsageError unless the word is allowed."""
     if word not in allowed:
         near = did_you_mean_one_of(word, allowed)
         hint = f"{', '.join(allowed)}{near and f'; {near}'}"
@@ -183,8 +185,9 @@ def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
 
 
 def _separators(given: Mapping[str, str]) -> dict[str, str]:
+    """Return the separator of each kind, the given ones in place of the usual; raises UsageError."""
     for kind, separator in given.items():
-        _one_of("separator kind", kind, tuple(SEPARATORS))
+        _refuse_unknown("separator kind", kind, tuple(SEPARATORS))
         allowed = ROS_SEPARATORS.get(kind, ("/", "_", "__", "-", "."))
         if separator not in allowed:
             raise UsageError(f"separator {kind}={separator!r}: use one of {' '.join(allowed)}")
@@ -193,7 +196,7 @@ def _separators(given: Mapping[str, str]) -> dict[str, str]:
     return {**SEPARATORS, **frame, **given}
 
 
-def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str, str]:
+def _active_separators(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str, str]:
     """Return the separator of each kind that this layout and topic strategy rename."""
     # A light is no frame and in no other file, so it has no reason to be the same in any layout.
     kinds = {"light", "stem", *TOPIC_KINDS, "namespace" if topics == NAMESPACE else "node"}
@@ -205,8 +208,9 @@ def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str
 
 
 def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
-    """Return where the robot's name goes in ``text``, a name of ``kind``; None where it is not
-    renamed. ``namespaced`` is true where a ROS namespace reaches the value."""
+    """Return where the robot's name goes in a name of ``kind``; None where it is not renamed.
+
+    ``namespaced`` is true where a ROS namespace reaches the value."""
     if naming.own and (kind, text) in naming.own:
         return naming.own[kind, text]
     separator = naming.separators.get(kind)
@@ -246,9 +250,10 @@ def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool =
 
 
 def is_of_world(topic: str) -> bool:
-    """Return whether it is a topic or service of the world, as ``/world/w/set_pose``, and not of a
-    model in it. Source: gazebosim/gz-sim src/SimulationRunner.cc,
-    systems/user_commands/UserCommands.cc, systems/scene_broadcaster/SceneBroadcaster.cc."""
+    """Return whether it is a world's topic or service (``/world/w/set_pose``), not a model's.
+
+    Source: gazebosim/gz-sim src/SimulationRunner.cc, systems/user_commands/UserCommands.cc,
+    systems/scene_broadcaster/SceneBroadcaster.cc."""
     parts = topic.split("/")
     return parts[:2] == ["", "world"] and len(parts) > 3 and parts[3] != "model"
 
@@ -325,9 +330,10 @@ def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[
 
 
 def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]:
-    """Return pairs of robots one of whose names ends (begins) like the other's affix, with that
-    separator. Only for such pairs can two different old names become one: with a postfix, ``arm``
-    of ``left_b`` and ``arm_left`` of ``b`` are both ``arm_left_b``."""
+    """Return pairs of robots whose affixes can make one name of two, with the separator.
+
+    The name of one ends (begins) like the affix of the other: with a postfix, ``arm`` of ``left_b``
+    and ``arm_left`` of ``b`` are both ``arm_left_b``."""
     names = set(robots)
     pairs = set()
     sides = {naming.affix, POSTFIX if naming.topics == POSTFIX else PREFIX}

@@ -22,11 +22,11 @@ _BEGINNING = 3
 
 def nearest(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
     """Return the known name most like ``name``; one with other case or dashes comes first. Or ""."""
-    return _nearest(name, tuple(known), alike)
+    return _cached_nearest(name, tuple(known), alike)
 
 
 @lru_cache(maxsize=256)  # a mistake comes again, in one file and in others
-def _nearest(name: str, known: tuple[str, ...], alike: float) -> str:
+def _cached_nearest(name: str, known: tuple[str, ...], alike: float) -> str:
     found = nearest_few(name, known, 1, alike)
     return found[0] if found else ""
 
@@ -46,6 +46,7 @@ def differ_in_numbers(name: str, other: str) -> bool:
 
 
 def _letters(name: str) -> str:
+    """Return a name in lower case without dashes and underscores."""
     return name.replace("_", "").replace("-", "").casefold()
 
 
@@ -56,8 +57,7 @@ class Guesses:
         self._made: dict[str, str] = {}
 
     def nearest(self, name: str, known: Iterable[str], alike: float = ALIKE) -> str:
-        """Return the ``nearest`` name, or "" where it has been asked for many others; ``known`` is
-        the same for the same name."""
+        """Return the ``nearest`` name, or "" once it was asked for ``HINTED`` other names."""
         if name not in self._made and len(self._made) < HINTED:
             self._made[name] = nearest(name, islice(known, COMPARED), alike)
         return self._made.get(name, "")
@@ -105,12 +105,20 @@ def did_you_mean_one_of(word: str, choices: Iterable[str], alike: float = CHOICE
     return _hint(min(begun, key=len, default="") or nearest(word, words, alike))
 
 
+def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
+    """Return the message that ``name`` is unknown, with the nearest and the list of ``known``."""
+    known = sorted(known)
+    near = did_you_mean_one_of(name, [*known, *more])
+    return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
+
+
 def extensions(word: str, choices: Iterable[str]) -> list[str]:
     """Return the choices that are the word with more parts behind it."""
     return [it for it in choices if word and it.startswith((f"{word}_", f"{word}-"))]
 
 
 def _hint(near: str) -> str:
+    """Return the question whether this name was meant; empty without one."""
     return f"did you mean {near!r}?" if near else ""
 
 

@@ -54,7 +54,7 @@ def outside(function: Callable[_P, _T]) -> Callable[_P, _T]:
             return function(*arguments, **named)
         question = Question(name, arguments, tuple(sorted(named.items())))
         try:
-            with _notes_kept(None):  # what it asks in turn is in its answer
+            with _noting_in(None):  # what it asks in turn is in its answer
                 answer = function(*arguments, **named)
         except Exception as error:  # whatever it is, the caller gets it
             _note(notes, question, _error_digest(error))
@@ -69,7 +69,7 @@ def outside(function: Callable[_P, _T]) -> Callable[_P, _T]:
 def recorded(job: Callable[[], _T]) -> tuple[_T, Asked | None]:
     """Return the result of a job and what it asked for; None for the latter if it may change."""
     notes: Asked = {}
-    with _notes_kept(notes):
+    with _noting_in(notes):
         result = job()
     return result, None if UNREPEATABLE in notes else notes
 
@@ -88,7 +88,7 @@ def answer_now(question: Question) -> str:
     if not getattr(function, "is_outside", False):
         raise LookupError(question.function)
     try:
-        with _notes_kept(None):
+        with _noting_in(None):
             return digest(function(*question.arguments, **dict(question.named)))  # type: ignore[misc]
     except Exception as error:  # the same error is the same answer
         return _error_digest(error)
@@ -111,12 +111,14 @@ def _error_digest(error: Exception) -> str:
 
 
 def _note(notes: Asked, question: Question, answer: str) -> None:
+    """Note the answer to a question, as unrepeatable where it differs from an earlier answer."""
     if notes.setdefault(question, answer) != answer:
         notes[UNREPEATABLE] = ""  # it changed while the job ran
 
 
 @contextmanager
-def _notes_kept(notes: Asked | None) -> Iterator[None]:
+def _noting_in(notes: Asked | None) -> Iterator[None]:
+    """Note answers in ``notes`` while the block runs; with None nothing is noted."""
     before = _NOTES.set(notes)
     try:
         yield
@@ -165,8 +167,7 @@ def file_state(path: str) -> tuple[int, ...]:
 
 
 def kept_bytes(path: str, most: int) -> bytes:
-    """Return the first bytes of a large file; raises OSError. Results that use them hold as long as the
-    file has its time and size: reading it again would cost more than the answer."""
+    """Return the first bytes of a large file, taken as unchanged by time and size; raises OSError."""
     file_state(path)
-    with _notes_kept(None), open(path, "rb") as file:
+    with _noting_in(None), open(path, "rb") as file:
         return file.read(most)

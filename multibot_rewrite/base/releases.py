@@ -47,10 +47,9 @@ _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-
 
 
 def chosen_release(given: str, environment: Mapping[str, str]) -> str:
-    """Return the requested release, or that of ROS_DISTRO, of the sourced ROS, or the newest LTS.
+    """Return the release asked for, or that of ROS_DISTRO or the sourced ROS, or the newest LTS.
 
-    Raises UsageError for a release that is not known.
-    """
+    Raises UsageError for a release that is not known."""
     found = given or environment.get(VARIABLE, "") or _sourced(environment) or NEWEST_LTS
     if found in RELEASES:
         return found
@@ -63,8 +62,7 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
 
 
 def release_for_description(given: str, environment: Mapping[str, str]) -> str:
-    """Return the release for one description: the one asked for, otherwise that of ROS_DISTRO,
-    otherwise of the sourced ROS; empty where none of them is known."""
+    """Return the release asked for, or of ROS_DISTRO, or of the sourced ROS; empty if none is known."""
     if given:
         return chosen_release(given, environment)
     found = environment.get(VARIABLE, "") or _sourced(environment)
@@ -135,7 +133,7 @@ def release_chosen_here(given: str | None = None) -> str:
 
 
 def why_here(given: str | None = None) -> str:
-    """Return ``why_told`` with this process's environment."""
+    """Return ``why_release`` with this process's environment."""
     return why_release(given or "", os.environ)
 
 
@@ -189,6 +187,7 @@ def is_release_words(words: str) -> bool:
 
 
 def _terms(words: str) -> Iterator[re.Match[str]]:
+    """Yield the terms of release words; raises UsageError for words that are none."""
     for term in words.split(","):
         found = _TERM.fullmatch(term.strip())
         if found is None:

@@ -58,8 +58,7 @@ _IN_A_TEXT = f"[{_ODD}]|\x1b(?!\\[[0-9;]*m)"
 
 
 def one_line(text: str) -> str:
-    r"""Return the text with every odd character escaped as in Python: ``\n``, ``\x1b``, ``\udcff``. The
-    middle of a very long text is left out."""
+    """Return the text on one line, odd characters escaped as in Python, a very long one shortened."""
     if len(text) > LONGEST:
         text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 2 :]}"
     if text.isprintable():

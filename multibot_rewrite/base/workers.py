@@ -36,11 +36,7 @@ class _Worker(NamedTuple):
 
 
 class WorkerPool(Generic[_Item, _Made]):
-    """Workers that all run ``work``.
-
-    ``lost`` makes the result for an item whose worker died, from the item and the number of the
-    signal (0: it ended by itself).
-    """
+    """Workers that run ``work``; ``lost`` makes the result for an item whose worker died."""
 
     def __init__(
         self,
@@ -131,8 +127,7 @@ def _ended(worker: _Worker) -> int:
 
 
 def processors() -> int:
-    """Return how many processors this process may use: those of its affinity (``taskset``), and of
-    them as much as the quota of its container."""
+    """Return how many processors this process may use, by its affinity and its container's quota."""
     if not hasattr(os, "sched_getaffinity"):  # not on Linux
         return os.cpu_count() or 1
     try:
@@ -185,6 +180,7 @@ def limit_time(seconds: float) -> None:
 
 
 def _limit(kind: int, most: int) -> None:
+    """Lower a resource limit of this process to ``most``."""
     _, hard = resource.getrlimit(kind)
     if hard == resource.RLIM_INFINITY or most < hard:
         resource.setrlimit(kind, (most, hard))

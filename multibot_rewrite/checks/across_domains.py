@@ -40,10 +40,11 @@ def not_across(fleet: Fleet) -> Iterator[Finding]:
 
 
 def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
-    """Yield nodes of simulator plugins in another domain. rclcpp has one context in that process,
-    so one domain (gazebo_ros_pkgs ros2 gazebo_ros/include/gazebo_ros/node.hpp, CreateWithArgs; no
-    element of <ros> names another). What gz sends has its bridge, a process of the robot's domain.
-    A domain_bridge brings no services and actions, by which a manager is asked."""
+    """Yield nodes of simulator plugins whose robot is in another domain."""
+    # rclcpp has one context in that process, so one domain (gazebo_ros_pkgs ros2
+    # gazebo_ros/include/gazebo_ros/node.hpp, CreateWithArgs; no element of <ros> names another).
+    # What gz sends has a bridge in the robot's domain. A domain_bridge brings no services and
+    # actions, by which a manager is asked.
     numbers = domain_of(plan)
     own = [it for it in plan.nodes if it.plugin.file and numbers[it.robot] != numbers[""]]
     if own:
@@ -73,5 +74,6 @@ def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:
 
 
 def _finding(apart: Apart, message: str, hint: str, level: str) -> Finding:
+    """Return a finding at the domains in the fleet file."""
     file, line = apart.place
     return NOT_ACROSS.finding(message, hint, level=level, file=file, line=line)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plan and what would run of the folder that was built for it -> where they differ.
+"""Compares a plan with what would run of the folder that was built for it.
 
 What the plan leaves to others is none of it: a simulator, the bringup of a robot, a node that is
 started by hand or on a condition.
@@ -12,13 +12,11 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.knowledge.records import MANAGER
-from multibot_rewrite.planning.ways import HOST, SPAWNER
 from multibot_rewrite.producers.launch.launched import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.system import (
     clocks,
-    localized,
     matching,
     names,
     planned_ends,
@@ -30,10 +28,22 @@ from multibot_rewrite.rules.system import (
     transforms,
 )
 from multibot_rewrite.rules.system.commands import command_to_nobody
+from multibot_rewrite.rules.system.unsent import is_for_driver
+from multibot_rewrite.rules.with_plan import subject_of
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.parameters import LIST_CONTROLLERS
-from multibot_rewrite.system.records import RUNS, SERVES, Environment, Place, System, doubts, surely
+from multibot_rewrite.system.records import (
+    HOST,
+    RUNS,
+    SERVES,
+    SPAWNER,
+    Environment,
+    Place,
+    System,
+    doubts,
+    surely,
+)
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
 # no parameter file names. Between robots they are the build's.
@@ -62,40 +72,38 @@ def not_as_planned(
     told: Sequence[Finding],
     real: Set[str] = frozenset(),
 ) -> Iterator[Finding]:
-    """Yield as errors what ``multibot check`` would report of the running fleet. ``started`` are
-    the planned nodes that the launch file starts. What the build has ``told`` is reported as there.
-    Robots that are ``real`` have drivers that no file names."""
+    """Yield as errors what ``multibot check`` would report of the running fleet.
+
+    ``started`` are the planned nodes that the launch file starts. What the build has ``told`` is
+    reported as there. ``real`` robots have drivers that no file names."""
     running = {it.name: it for it in seen.nodes}
     found = check_view(planned, seen._replace(environment=Environment()))
     if not found:
         return
-    by_plan = index(planned, whose_by_plan(planned))
-    open_, known = open_names(by_plan, told), lists_by_key((_key(by_plan, it), it) for it in told)
+    by_plan, there = (index(it, whose_by_plan(planned)) for it in (planned, seen))
+    open_, known = (
+        open_names(by_plan, told),
+        lists_by_key((subject_of(by_plan, it), it) for it in told),
+    )
     for it in found:
         level, place = _level(it, planned, seen, started), Place(it.file, it.line, it.column)
         if not it.file and it.node in running:
             place = running[it.node].place
-        if level and it.robot in real and is_for_driver(it, planned, started):
+        if level and it.robot in real and is_for_driver(there, it):
             level = NOTE
         if not level or any((it.code, name) in open_ for name in it.names):
             continue
         here = it._replace(file=place.file, line=place.line, column=place.column)
-        yield from (one._replace(level=level) for one in known.get(_key(by_plan, it), [here]))
+        yield from (one._replace(level=level) for one in known.get(subject_of(by_plan, it), [here]))
 
 
 def is_of_sources(it: Finding) -> bool:
-    """Return whether one robot may have the fault by its sources already, by the code."""
+    """Return whether a finding's code is for a fault that one robot's sources may have."""
     return bool(it.robot) and it.code in (*_OF_SOURCES, *_MISSED)
 
 
-def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:
-    """Return the code and the names without those of robots."""
-    return (it.code, *map(by_plan.plain, it.names)) if it.names else (it.code, str(it))
-
-
 def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
-    """Return the codes and names of what is open already: what has no sender or server by the plan
-    or the reports is no fault of the folder, nor is a client without a server."""
+    """Return codes and names of what is open by the plan or the reports already."""
     lacking = [it for it in (*told, *absences(by_plan)) if it.code in ABSENCE]
     alone = (it for it in lacking if it.code not in _MISSED or len(it.names) == 1)
     found = {(it.code, name) for it in alone for name in it.names}
@@ -106,7 +114,7 @@ def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, 
 def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str:
     """Return the level of a finding; empty for what is no fault of the folder."""
     if it.code in _OF_NODES:
-        return ERROR if _is_of_launch(it, planned, seen, started) else ""
+        return ERROR if _is_to_be_started(it, planned, seen, started) else ""
     if it.code in CLAIMS and it.level == WARNING:
         return ERROR
     if it.level != ERROR or it.code == _OF_OTHERS:
@@ -122,27 +130,16 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     if it.code == planned_nodes.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
     sure = it.code not in ABSENCE or not doubts(seen)
-    return ERROR if sure or _is_of_a_lack(it, planned, seen, started) else ""
+    return ERROR if sure or _names_what_a_node_lacks(it, planned, seen, started) else ""
 
 
-def _is_of_a_lack(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Return whether it is about a planned name that a node of the launch file lacks."""
+def _names_what_a_node_lacks(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
+    """Return whether a finding names what a started node lacks, compared with the plan."""
     there = {(one.node, one.kind, one.role, one.name) for one in seen.ends}
     named = (one for one in surely(planned).ends if one.name in it.names)
     lacks = [one.node for one in named if (one.node, one.kind, one.role, one.name) not in there]
     of_nodes = (it._replace(code=_LACKS, node=node) for node in lacks)
-    return any(_is_of_launch(one, planned, seen, started) for one in of_nodes)
-
-
-def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
-    """Return whether the driver of a real robot may mend it: it places the link at which the tree is in
-    pieces, which no started node's parameters name, and sends what a localizer waits for."""
-    if it.code == localized.map_not_joined.code:
-        # With another name, a frame below the map is the wrong one.
-        return len(it.names) == 1
-    edges = (it for it in planned.edges if started & {*it.publishers})
-    named = {frame for edge in edges for frame in (edge.parent, edge.child)}
-    return it.code == tf_pieces.tf_tree_in_pieces.code and not (it.node or named >= {*it.names})
+    return any(_is_to_be_started(one, planned, seen, started) for one in of_nodes)
 
 
 def _is_read(seen: System) -> bool:
@@ -150,9 +147,9 @@ def _is_read(seen: System) -> bool:
     return all(it.code != NOT_WHOLE for it in doubts(seen))
 
 
-def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Return whether the launch file is to start the node, or one of the robot. What a node has
-    depends on its parameters, a controller on its manager; nothing does on an unknown program."""
+def _is_to_be_started(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
+    """Return whether the launch file is to start the node, or one of the robot."""
+    # What a node has depends on its parameters, a controller on its manager.
     if it.code == planned_nodes.missing_robot.code:
         return any(one.robot == it.robot and one.name in started for one in planned.nodes)
     own = next((one for one in planned.nodes if one.name == it.node), None)

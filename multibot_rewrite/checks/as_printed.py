@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a fleet is to start and what the printed ``fleet.launch.py`` and the lines of ``commands.md`` do
--> where they differ.
+"""Compares what a fleet is to start with what ``fleet.launch.py`` and ``commands.md`` do.
 
-The launch file is executed with other launch arguments each time, the lines are read as a shell and rcl
-read them. Every value of every action is compared with the records that it was printed from: it is
-printed by other code than this. A controller that the launch file leaves out has its line all the same,
-and so have programs that only a person starts.
-Sources: launch and launch_ros jazzy; lifecycle_msgs msg/Transition.msg.
-"""
+The launch file is executed with other launch arguments each time, the lines are read as a shell
+and rcl read them. Every value of every action is compared with the records that it was printed
+from: it is printed by other code than this. A controller that the launch file leaves out has its
+line all the same, and so have programs that only a person starts. Sources: launch and launch_ros
+jazzy; lifecycle_msgs msg/Transition.msg."""
 
 import os
 import re
@@ -84,7 +82,7 @@ def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> list
     It is written to an empty ``folder``. Each file whose text it reads has a text of its own there: it
     is compared which file is read, and not what it says.
     """
-    texts = {it: _text_of(it).encode() for it in starts.texts}
+    texts = {it: _placeholder_text(it).encode() for it in starts.texts}
     for name, data in {LAUNCH: launch_file, **texts}.items():
         os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
         Path(folder, name).write_bytes(data)
@@ -101,14 +99,13 @@ def not_as_printed(starts: FleetStarts, launch_file: bytes, folder: str) -> list
     return [*dict.fromkeys(found)]
 
 
-def _text_of(path: str) -> str:
+def _placeholder_text(path: str) -> str:
     """Return a text that only its file has."""
     return f"the text of {path}"
 
 
 def _launches(starts: FleetStarts) -> list[Launching]:
-    """Return launches in which every launch argument has two values, and every way to choose robots
-    is taken: the first two, and two more by name; all of them are in the others."""
+    """Return launches with two values of each launch argument and every way to choose robots."""
     usual = {name: default for name, default, _ in launch_arguments(starts)}
     clock = str(not starts.use_sim_time).lower()
     off = {"use_sim_time": clock, "rviz": "false", "simulator": "false"}
@@ -137,8 +134,10 @@ def _launches(starts: FleetStarts) -> list[Launching]:
 
 
 class _Planned(NamedTuple):
-    """What a fleet is to start in one launch; ``home`` is the folder of the build, ``arguments`` are
-    the values of the launch arguments, ``numbers`` those of its nodes with a life cycle."""
+    """What a fleet is to start in one launch; ``home`` is the folder of the build.
+
+    ``arguments`` are the values of the launch arguments, ``numbers`` those of its nodes with a
+    life cycle."""
 
     starts: FleetStarts
     launch: Launching
@@ -158,7 +157,7 @@ class _Planned(NamedTuple):
         yield from self.processes(self.starts.windows)
 
     def is_on(self, condition: str) -> bool:
-        """Return whether each word of a condition holds."""
+        """Return whether all parts of a condition hold."""
         return all(holds(it, self.arguments.get(name_in(it), "")) for it in condition.split())
 
     def chosen(self) -> list[RobotStarts]:
@@ -231,10 +230,10 @@ class _Planned(NamedTuple):
         yield Action(kind, {**values, "output": "screen", "environment": environment})
         if it.brought_up:
             number = next(self.numbers)
-            entities = [{"event": _change(number, _ACTIVATE)}]
+            entities = [{"event": _transition_keywords(number, _ACTIVATE)}]
             target = {"target_lifecycle_node": number, "entities": entities}
             yield Action("RegisterEventHandler", {**target, **_CONFIGURED})
-            yield Action("EmitEvent", {"event": _change(number, _CONFIGURE)})
+            yield Action("EmitEvent", {"event": _transition_keywords(number, _CONFIGURE)})
 
     def environment(self, robot: str) -> dict[str, str]:
         """Return the environment of what is started for a robot."""
@@ -275,7 +274,7 @@ class _Planned(NamedTuple):
             path = os.path.join(self.home, it.path)
             return {"param_file": path, "allow_substs": True} if it.substituted else path
         if isinstance(it, Text):
-            return _text_of(it.path)
+            return _placeholder_text(it.path)
         if isinstance(it, Mapping):
             return {key: self.value(one) for key, one in it.items()}
         if isinstance(it, str):
@@ -294,12 +293,12 @@ def _keywords(it: Start, there: Mapping[str, str]) -> dict[str, Any]:
     return {name: own if name == "additional_env" else one for name, one in keywords(it).items()}
 
 
-def _change(number: int, transition: int) -> dict[str, Any]:
+def _transition_keywords(number: int, transition: int) -> dict[str, Any]:
     return {"lifecycle_node_matcher": [number], "transition_id": transition}
 
 
 def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
-    """Return in words what the lines of ``commands.md`` and the planned processes do not share."""
+    """Return messages about planned processes and lines of ``commands.md`` that differ."""
     above, *sections = ([*_commands(section)] for section in _SECTION.split(text))
     both = zip(starts.robots, sections, strict=False)
     opened = [it for section in (above, *sections) for it in section if it[:2] == _RVIZ]
@@ -324,7 +323,7 @@ def _start_differences(planned: Iterable[Start], printed: Iterable[Start]) -> It
 
 
 def _as_commanded(it: Start) -> Start:
-    """Return a planned process as its line has it: values that are no texts are no words of it."""
+    """Return a planned process as its line has it, without arguments that are no texts."""
     rows = [row for row in it.parameters if isinstance(row, Mapping)]
     values = {name: one for row in rows for name, one in row.items() if isinstance(one, str)}
     names = {"__node": it.name, **dict(it.remappings)}
@@ -338,7 +337,7 @@ def _as_commanded(it: Start) -> Start:
 
 
 def _commands(text: str) -> Iterator[Start]:
-    """Yield the processes of the lines; one under a condition is for a person to judge."""
+    """Yield the processes of the lines, except those under a condition."""
     for line in text.splitlines():
         words: list[str] = []
         with suppress(ValueError):
@@ -357,24 +356,24 @@ def _differences(planned: list[Action], printed: Iterable[Action]) -> Iterator[D
     """Yield the first difference of each action, or actions that are missing or too many."""
     found = list(printed)
     if len(planned) != len(found):
-        wanted, given = (Counter(map(_who, it)) for it in (planned, found))
+        wanted, given = (Counter(map(_title, it)) for it in (planned, found))
         for it in wanted - given:
             yield Difference(f"{it} is planned and is not started", Place("", 1))
         for it in given - wanted:
-            place = next(one.place for one in found if _who(one) == it)
+            place = next(one.place for one in found if _title(one) == it)
             yield Difference(f"{it} is started and is not planned", place)
         return
     for one, other in zip(planned, found, strict=True):
         if one.kind != other.kind:
-            message = f"{_who(one)} is planned, and {_who(other)} is started in its place"
+            message = f"{_title(one)} is planned, and {_title(other)} is started in its place"
             yield Difference(message, other.place)
-        elif at := _first(one.values, other.values):
+        elif at := _first_difference(one.values, other.values):
             where, wanted, given = at
-            message = f"{_who(one)}: {where} is {_shown(given)}, planned is {_shown(wanted)}"
+            message = f"{_title(one)}: {where} is {_shown(given)}, planned is {_shown(wanted)}"
             yield Difference(message, other.place)
 
 
-def _who(it: Action) -> str:
+def _title(it: Action) -> str:
     """Return what an action is called in a message."""
     values = it.values
     program = "/".join(filter(None, (values.get(key, "") for key in ("package", "executable"))))
@@ -384,7 +383,7 @@ def _who(it: Action) -> str:
     return f"{program} {name}" if name != "/" else program
 
 
-def _first(planned: Any, printed: Any, where: str = "") -> tuple[str, Any, Any] | None:
+def _first_difference(planned: Any, printed: Any, where: str = "") -> tuple[str, Any, Any] | None:
     """Return the first value that differs: where it is, as planned, as printed; None for none."""
     # It differs for values of other types, which are equal.
     if repr(planned) == repr(printed):
@@ -398,7 +397,7 @@ def _first(planned: Any, printed: Any, where: str = "") -> tuple[str, Any, Any] 
     else:
         both = enumerate(zip_longest(planned, printed, fillvalue=_NOTHING))
         every = ((f"{where}[{at}]", one, other) for at, (one, other) in both)
-    return next(filter(None, (_first(one, other, at) for at, one, other in every)), None)
+    return next(filter(None, (_first_difference(one, other, at) for at, one, other in every)), None)
 
 
 def _is_deep(it: Any) -> bool:

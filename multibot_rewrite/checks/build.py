@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A planned fleet -> every file that ``multibot build`` writes, in memory, and what is wrong with them:
-one step a kind of file."""
+"""Makes every file that ``multibot build`` writes, in memory, and finds what is wrong with them."""
 
 import os
 from collections.abc import Iterator, Sequence
@@ -80,9 +79,11 @@ class Outputs(NamedTuple):
 
 
 def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
-    """Return every file of a fleet. ``folder`` is where they will be, if they are written at all.
-    Raises InputError for a related file that cannot be read or rewritten, UsageError where two files
-    would have the same path, and for parameter files in a style that does not serve the layout."""
+    """Return every file of a fleet, which will be in ``folder``, if they are written at all.
+
+    Raises InputError for a related file that cannot be read or rewritten, UsageError where two
+    files would have the same path, and for parameter files in a style that does not serve the
+    layout."""
     check_style(plan.file)
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
@@ -138,6 +139,7 @@ def _check_paths_differ(files: Sequence[OutputFile]) -> None:
 
 
 def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
+    """Yield the rewritten description, SRDF and model of each robot."""
     for robot in plan.robots:
         spec = robot.spec
         loading, findings = with_own_controllers(robot, folder)
@@ -157,18 +159,19 @@ def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
 
 
 def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:
-    """Return the plan with its places relative to the fleet file: equal for every working directory."""
+    """Return the plan with places relative to the fleet file, equal for any working directory."""
     folder = os.path.dirname(os.path.abspath(plan.file.file))
     made = expected(fleet)
     nodes = (
-        it._replace(place=_from(folder, it.place), plugin=_from(folder, it.plugin))
+        it._replace(place=_relative(folder, it.place), plugin=_relative(folder, it.plugin))
         for it in made.nodes
     )
-    gaps = (_portable(plan, folder, it) for it in made.gaps)
+    gaps = (_portable_finding(plan, folder, it) for it in made.gaps)
     return made._replace(nodes=tuple(nodes), gaps=tuple(gaps))
 
 
 def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFile]:
+    """Yield the plan and the files that are made of it."""
     yield OutputFile(PLAN, f"{editors.schema_line(editors.PLAN)}\n{to_yaml(planned)}".encode())
     yield OutputFile(editors.schema_name(editors.PLAN), editors.schema_text(editors.PLAN))
     if plan.file.sros2:
@@ -184,13 +187,13 @@ def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFi
     yield OutputFile(TABLE, _remappings(fleet.named_table).encode())
 
 
-def _from(folder: str, place: Place) -> Place:
-    """Return the place relative to a folder; names without line or folder stay as they are."""
+def _relative(folder: str, place: Place) -> Place:
+    """Return the place relative to a folder; one without line or folder is unchanged."""
     is_moved = place.line and os.path.dirname(place.file)
     return place._replace(file=os.path.relpath(place.file, folder)) if is_moved else place
 
 
-def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
+def _portable_finding(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
     """Return a finding with its files relative to a folder."""
     message, hint = gap.message, gap.hint
     for path in input_files(plan.file):
@@ -201,8 +204,8 @@ def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
 
 
 def _remappings(table: Table) -> str:
-    """Return the remap rules of every node as in ``multibot plan --output-kind json``; the names that
-    result are in the plan. It is written as text, since PyYAML takes longer than all the rest."""
+    """Return the remap rules of every node as in ``multibot plan --output-kind json``."""
+    # It is written as text, since PyYAML takes longer than all the rest.
     scalar = cache(quoted)
     robots: dict[str, list[str]] = {}
     for robot, given in standing_by_robot(table):

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fleet of a fleet file with what is open in its robots, before and after their rewrite: build,
-plan, rehearse and check say it. What a rewrite opens is an error. What the rules of any system find in
-a fleet as it is written, and whether its sources have it."""
+"""What is open in a fleet before and after the rewrite; what the rewrite opens is an error."""
 
 from __future__ import annotations
 
@@ -42,7 +40,6 @@ from multibot_rewrite.producers.launch.bridges import services_in
 from multibot_rewrite.rules.check import absences, contradictions
 from multibot_rewrite.rules.files.plugin_names import without_input
 from multibot_rewrite.rules.system.differing import differs_from_its_likes
-from multibot_rewrite.rules.system.localized import map_not_joined
 from multibot_rewrite.rules.system.states import (
     interface_claimed_twice,
     interface_commanded_twice,
@@ -50,7 +47,12 @@ from multibot_rewrite.rules.system.states import (
     open_claims,
 )
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
-from multibot_rewrite.rules.system.unsent import frame_not_sent, no_longer_sent, open_ends
+from multibot_rewrite.rules.system.unsent import (
+    frame_not_sent,
+    is_for_driver,
+    no_longer_sent,
+    open_ends,
+)
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.merging import joined
 from multibot_rewrite.system.ownership import ALONE, Whose, whose_by_plan
@@ -73,9 +75,9 @@ _ASKED = (tf_tree_in_pieces.code, frame_not_sent.code, interface_not_exported.co
 
 
 def contradicted(plan: FleetPlan, whole: System, expected: System) -> Iterator[Finding]:
-    """Yield faults between nodes that surely run; in one robot it had them before its rewrite. What
-    all robots share on purpose is no fault, nor what tf relays ``expected`` to run send; collisions
-    are reported with the table."""
+    """Yield faults between nodes that surely run; a single robot had them before its rewrite."""
+    # Not what all share on purpose, nor what tf relays ``expected`` to run send; collisions are
+    # reported with the table.
     whose, copies = whose_by_plan(expected), copying_nodes(expected)
     met = {(it.code, name) for it in plan.fleet.table.problems for name in it.names}
     shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
@@ -91,7 +93,7 @@ def contradicted(plan: FleetPlan, whole: System, expected: System) -> Iterator[F
         if any((it.code, about) in met for about in (*it.names, it.node)):
             continue
         level = WARNING if it.robot and it.level == ERROR else it.level
-        yield _in_file(it._replace(level=level), robot)
+        yield _at_file(it._replace(level=level), robot)
 
 
 def left_open(
@@ -101,111 +103,108 @@ def left_open(
     whose: Whose,
     texts: Sequence[OutputFile] = (),
 ) -> Iterator[Finding]:
-    """Yield what is open in a robot by its sources, and as it is written: an error where only its
-    rewrite has opened it. ``texts`` are the files that were made."""
+    """Yield what is open in a robot: warnings by its sources, errors if its rewrite opened it."""
     # As it is written, with the needs that its sources have.
-    needed = _by_key(before, (it for it in before.ends if it.role in NEEDS))
-    keys = {id(it): key for key, it in _by_key(after, after.ends).items()}
+    needed = _ends_by_key(before, (it for it in before.ends if it.role in NEEDS))
+    keys = {id(it): key for key, it in _ends_by_key(after, after.ends).items()}
     ends = (it for it in after.ends if it.role not in NEEDS or keys.get(id(it)) in needed)
     old, new = index(before, ALONE), index(after._replace(ends=tuple(ends)), whose)
     in_sources, found = absences(old), absences(new)
-    yield from _controlled(robot, before, after, texts)
-    # The frames that its files name and nothing of it sends; in a simulator no driver might.
-    known = before if robot.spec.simulator == REAL else before._replace(environment=Environment())
-    for it in _ask((frame_not_sent,), known):
-        yield _in_file(it, robot, by_sources=True)
-    yield from _apart(robot, after, in_sources, found)
-    was_open = _by_key(before, open_ends(old))
+    yield from _controller_faults(robot, before, after, texts)
+    # What the drivers of a real robot, which no file names, send.
+    is_real = robot.spec.simulator == REAL
+    for it in _findings_of_rules((frame_not_sent,), before._replace(environment=Environment())):
+        level = NOTE if is_real and is_for_driver(old, it) else it.level
+        yield _at_file(it._replace(level=level), robot, by_sources=True)
+    yield from _separate_trees(robot, after, in_sources, found)
+    was_open = _ends_by_key(before, open_ends(old))
     lost = {
         (it.node, it.name): it
-        for key, it in _by_key(after, open_ends(new)).items()
+        for key, it in _ends_by_key(after, open_ends(new)).items()
         if key not in was_open
     }
-    by_end = {_about(it, before): it for it in in_sources if it.node}
+    by_end = {_key_of_end(it, before): it for it in in_sources if it.node}
     for it in (it for it in found if it.code not in _ASKED):
         if it.node and (it.node, it.names[0]) in lost:
             del lost[it.node, it.names[0]]
-            yield _in_file(it, robot)
+            yield _at_file(it, robot)
             continue
         # Names as the sources have them, where these have both.
-        source = by_end.get(_about(it, after)) if it.node else None
+        source = by_end.get(_key_of_end(it, after)) if it.node else None
         is_placed = source and any(
             end.name == source.names[-1] and end.place != NOWHERE for end in before.ends
         )
         said = source if source and is_placed else it
         level = WARNING if said.level == ERROR else said.level
-        # Its drivers, which no file names, send what a localizer waits for.
-        real = robot.spec.simulator == REAL and it.code == map_not_joined.code
-        level = NOTE if real and len(it.names) == 1 else level
-        yield _in_file(said._replace(level=level), robot, by_sources=said is source)
-    yield from (_in_file(no_longer_sent(it), robot) for it in lost.values())
+        level = NOTE if is_real and is_for_driver(new, it) else level
+        yield _at_file(said._replace(level=level), robot, by_sources=said is source)
+    yield from (_at_file(no_longer_sent(it), robot) for it in lost.values())
 
 
-def _apart(
+def _separate_trees(
     robot: RewrittenRobot, after: System, in_sources: Iterable[Finding], found: Iterable[Finding]
 ) -> Iterator[Finding]:
     """Yield separate tf trees in the sources, and as errors those that only the rewrite has made."""
     known = {it.name: it.known for it in after.nodes}
     cut = [it for it in in_sources if it.code == tf_tree_in_pieces.code]
     told = {it.node.lstrip("/") for it in cut}
-    yield from (_in_file(it, robot, by_sources=True) for it in cut)
+    yield from (_at_file(it, robot, by_sources=True) for it in cut)
     for it in (it for it in found if it.code == tf_tree_in_pieces.code):
         if known.get(it.node, it.node) not in told:
-            yield _in_file(it._replace(level=ERROR), robot)
+            yield _at_file(it._replace(level=ERROR), robot)
 
 
-def _controlled(
+def _controller_faults(
     robot: RewrittenRobot, before: System, after: System, texts: Sequence[OutputFile]
 ) -> Iterator[Finding]:
-    """Yield faults between a robot's controllers and its hardware, by its sources; an error where
-    only its rewrite has made them."""
-    for it in _ask(
+    """Yield faults between controllers and hardware, errors if the rewrite made them."""
+    for it in _findings_of_rules(
         (interface_not_exported, interface_claimed_twice, interface_commanded_twice), before
     ):
         # What a rewrite has not made is no error.
         level = NOTE if it.level == NOTE else WARNING
-        yield _in_file(it._replace(level=level), robot, by_sources=True)
+        yield _at_file(it._replace(level=level), robot, by_sources=True)
     was_open = open_claims(before.interfaces)
-    old = {key for key, it in _claims(before) if it in was_open}
-    left = [it for key, it in _claims(after) if key not in old]
+    old = {key for key, it in _numbered_claims(before) if it in was_open}
+    left = [it for key, it in _numbered_claims(after) if key not in old]
     exports = [it for it in after.interfaces if it.role == EXPORTS]
     opened = after._replace(interfaces=(*exports, *left))
-    for it in _ask((interface_not_exported,), opened):
+    for it in _findings_of_rules((interface_not_exported,), opened):
         source = next((text for text in texts if text.path == it.file and text.sources), None)
         file, line = line_in_source(source, it.line) if source else (it.file, it.line)
         hint = SET_PREFIX if robot.needs_prefix else it.hint
         found = it._replace(level=ERROR, file=file, line=line, hint=hint)
-        yield _in_file(found, robot, by_sources=True)
+        yield _at_file(found, robot, by_sources=True)
 
 
-def _ask(rules: Iterable[Rule], system: System) -> Iterator[Finding]:
+def _findings_of_rules(rules: Iterable[Rule], system: System) -> Iterator[Finding]:
     seen = index(system, ALONE)
     for rule in rules:
         yield from cast(Callable[[Index], Iterator[Finding]], rule.check)(seen)
 
 
-def _claims(system: System) -> Iterator[tuple[tuple[bool, int], Interface]]:
+def _numbered_claims(system: System) -> Iterator[tuple[tuple[bool, int], Interface]]:
     """Yield the claims of controllers, and those of MoveIt, each by its number."""
     numbers = {True: count(), False: count()}
     for it in (it for it in system.interfaces if it.role == CLAIMS):
         yield (it.kind == JOINT, next(numbers[it.kind == JOINT])), it
 
 
-def _by_key(system: System, ends: Iterable[End]) -> Mapping[Key, End]:
+def _ends_by_key(system: System, ends: Iterable[End]) -> Mapping[Key, End]:
     """Return ends by what a rewrite does not change: kind, role, node and the name in its code."""
     known = {it.name: it.known for it in system.nodes}
     return {(it.kind, it.role, known.get(it.node, it.node), it.code_name): it for it in ends}
 
 
-def _about(finding: Finding, system: System) -> Key | None:
+def _key_of_end(finding: Finding, system: System) -> Key | None:
     """Return the key of the end that a finding is about; None without one."""
     ends = (it for it in system.ends if (it.node, it.name) == (finding.node, finding.names[0]))
-    return next(iter(_by_key(system, ends)), None)
+    return next(iter(_ends_by_key(system, ends)), None)
 
 
-def _in_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) -> Finding:
-    """Return the finding at its file, otherwise at the robot's line in the fleet file, with the
-    node in the message. The names of the sources have no robot."""
+def _at_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) -> Finding:
+    """Return the finding at its file, or the robot's line, with the node in the message."""
+    # The names of the sources have no robot.
     it, spec = finding, robot.spec
     file, line, column = (it.file, it.line, it.column) if it.file else (spec.file, spec.line, 1)
     who = f"{it.node} of {spec.name} " if by_sources else f"{it.node} "
@@ -214,12 +213,11 @@ def _in_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) 
 
 
 def closed_plan(plan: FleetPlan) -> Fleet:
-    """Return the fleet with all nodes that are started, and its ``gaps``. Raises InputError for a
-    related file that cannot be read or rewritten."""
+    """Return the fleet with all started nodes and its ``gaps``; raises InputError."""
     with gc_paused():
         fleet = with_start_pose_nodes(plan)
         # The others close as the first one of each that differs in more than its names does.
-        few = _of_some(plan, [it.robots[0] for it in group_robots(plan)])
+        few = _plan_of_some(plan, [it.robots[0] for it in group_robots(plan)])
         read = chain(related_files(few), bridge_outputs(few))
         gaps = gaps_of(plan, fleet, checked(few, read))
         rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
@@ -227,8 +225,8 @@ def closed_plan(plan: FleetPlan) -> Fleet:
 
 
 def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
-    """Return what the bridges of these files carry, except those of robots that may be real, and
-    the shared one if all may be."""
+    """Return what these bridges carry, but those of robots that may be real."""
+    # The shared one is left out if all robots may be real.
     maybe = plan.fleet.maybe_real
     real = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}
     left = {f"{it}/{BRIDGE_FILE}" for it in real}
@@ -246,8 +244,7 @@ def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...
 def gaps_of(
     plan: FleetPlan, fleet: Fleet, made: Iterable[OutputFile | Finding]
 ) -> tuple[Finding, ...]:
-    """Return the gaps in the robots of a fleet, by place; ``made`` are the robots' files, and what
-    was found as they were made."""
+    """Return the gaps in the robots of a fleet by place; ``made`` are their files and findings."""
     texts, findings = sorted_out(made)
     known = of_files(findings)
     for robot in (group.robots[0] for group in group_robots(plan)):
@@ -255,14 +252,18 @@ def gaps_of(
     # What a file of the user lacks has been found there.
     said = {(it.code, it.hint) for it in known}
     lacking = without_input(plan.fleet.table.runs, plan.file.distro)
-    known |= {_in_file(it, plan.robots[0]) for it in lacking if (it.code, it.hint) not in said}
-    known |= {*_gaps(plan, fleet, texts, known), *not_across(fleet), *_shared(plan)}
+    known |= {_at_file(it, plan.robots[0]) for it in lacking if (it.code, it.hint) not in said}
+    known |= {
+        *_gaps_of_robots(plan, fleet, texts, known),
+        *not_across(fleet),
+        *_unused_shared_names(plan),
+    }
     return tuple(
         sorted(known, key=lambda it: (it.file, it.line, it.column, it.code, it.message, it))
     )
 
 
-def _shared(plan: FleetPlan) -> Iterator[Finding]:
+def _unused_shared_names(plan: FleetPlan) -> Iterator[Finding]:
     """Yield a finding for each shared name that nothing of the fleet has."""
     specs = [it.spec for it in plan.robots]
     filled = {path: text.encode() for it in specs for path, text in it.filled}
@@ -280,13 +281,13 @@ def sorted_out(made: Iterable[OutputFile | Finding]) -> tuple[list[OutputFile], 
     return files, [it for it in both if isinstance(it, Finding)]
 
 
-def _gaps(
+def _gaps_of_robots(
     plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputFile], known: Collection[Finding]
 ) -> Iterator[Finding]:
-    """Yield what is open; robots of the same sources are judged once, and all of them are named."""
+    """Yield what is open in robots; those of the same sources are checked once."""
     groups = [*group_robots(plan)]
     # Of robots that differ in their names alone two show where they meet.
-    few = _of_some(plan._replace(fleet=fleet), [one for it in groups for one in it.robots[:2]])
+    few = _plan_of_some(plan._replace(fleet=fleet), [one for it in groups for one in it.robots[:2]])
     alone = [(it.robots[0], it.fleet) for it in split_per_robot(few)]
     written = {it.spec.name: as_written(own, it, texts) for it, own in alone}
     shared = of_all_robots((it for it in few.fleet.table.runs if not it.robot), texts)
@@ -312,7 +313,7 @@ def _gaps(
         yield from written_findings(plan, group, texts, known)
 
 
-def _of_some(plan: FleetPlan, robots: Sequence[RewrittenRobot]) -> FleetPlan:
+def _plan_of_some(plan: FleetPlan, robots: Sequence[RewrittenRobot]) -> FleetPlan:
     """Return a plan of some of the robots, with the nodes for all."""
     fleet, kept = plan.fleet, {"", *(it.spec.namespace for it in robots)}
     table = fleet.table._replace(runs=tuple(it for it in fleet.table.runs if it.robot in kept))

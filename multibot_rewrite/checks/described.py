@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the rules of descriptions find in those of a fleet's robots: every error of the lint, and what a
-simulator leaves out."""
+"""Errors of the lint in the descriptions of a fleet's robots, and what a simulator leaves out."""
 
 from __future__ import annotations
 
@@ -24,11 +23,12 @@ def wrong_in_descriptions(
     launched: Iterable[Member] = (),
     unplaced: Iterable[Member] = (),
 ) -> Iterator[Finding]:
-    """Yield findings about what stops the robots of these descriptions, each once. The ``simulated``
-    ones run in Gazebo; unless they are in ``said`` (the fleet file says so), the hint says how to
-    deny it. In descriptions that the user's launch files start (``launched``) errors are warnings,
-    except for a model that the simulator into which the fleet file alone puts the robot
-    (``unplaced``) does not make."""
+    """Yield findings about what stops the robots of these descriptions, each once.
+
+    ``simulated`` robots run in Gazebo; for those not in ``said`` (by the fleet file) the hint
+    says how to deny it. In descriptions that the user's launch files start (``launched``) errors
+    are warnings, except for a model that is missing in the simulator of the fleet file
+    (``unplaced``)."""
     # What only looks at a robot's files needs none of the lint.
     from multibot_rewrite.lint.launched import is_of_simulator
     from multibot_rewrite.rules.description.names import reserved_name
@@ -46,7 +46,7 @@ def wrong_in_descriptions(
             definitions=definitions, distro=distro, ros=ROS_2, simulated=file in in_gazebo
         )
         shared = {(one.code, one.message) for one in it.shared}
-        for one in _linted(document, made, settings):
+        for one in _lint_findings(document, made, settings):
             if (one.code, one.message) in shared:
                 continue
             of_simulator = one.level == ERROR and is_of_simulator(one, document)
@@ -58,14 +58,14 @@ def wrong_in_descriptions(
 
 
 def as_known(it: Finding, what: str) -> Finding:
-    """Return a finding about what one robot has by itself as a warning that says so."""
+    """Return a finding as a warning that says what one robot has by itself already."""
     already = ALREADY.format(what)
     hint = f"{it.hint}; {already}" if it.hint else already
     return it._replace(level=WARNING, hint=hint)
 
 
-def _linted(document: Document, made: Document, settings: Settings) -> Iterator[Finding]:
-    """Return what is wrong with a document, except what is right in the one ``made`` of it."""
+def _lint_findings(document: Document, made: Document, settings: Settings) -> Iterator[Finding]:
+    """Yield the errors in a document, except those that are mended in ``made``."""
     from multibot_rewrite.lint.check import lint_subject, unsuppressed
     from multibot_rewrite.lint.files.subjects import make_subject
     from multibot_rewrite.lint.launched import in_use, may_stop

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a node set that end at once, because what they read is in no file of the robot, or wait
-for ever, because no camera of its description sends it; a robot of which all is known and that does
-not drive: nothing reads its commands, or nothing sends what it senses.
+"""Nodes of node sets that end or wait for ever without input, and robots that cannot drive.
 
-Sources: moveit2 jazzy moveit_ros/planning/rdf_loader/src/rdf_loader.cpp (no robot_description_semantic,
-no model), ros2_control jazzy hardware_interface/src/component_parser.cpp ("no ros2_control tag").
-"""
+Sources: moveit2 jazzy moveit_ros/planning/rdf_loader/src/rdf_loader.cpp (no
+robot_description_semantic, no model), ros2_control jazzy
+hardware_interface/src/component_parser.cpp ("no ros2_control tag")."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -57,8 +55,8 @@ NEEDS: Mapping[str, Need] = {
 
 
 def lacking(plan: FleetPlan) -> Iterator[Finding]:
-    """Find the nodes that a node set starts and that end at once. A node that a file of the robot
-    names may get what it reads elsewhere: from the robot's driver, or from another launch file."""
+    """Yield nodes of node sets that end at once."""
+    # One that a file of the robot names may get its input elsewhere.
     for robot in (it for it in plan.robots if not it.spec.launch):
         evidence = plan.evidence_of(robot)
         maps = {it.node for it in evidence.given if MAP in it.values and it.values[MAP].value}
@@ -75,8 +73,7 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def without_camera(plan: FleetPlan) -> Iterator[Finding]:
-    """Yield nodes of a node set that read a camera which a simulated robot lacks, or of which it
-    has several: it is unknown which one they need."""
+    """Yield nodes of node sets that read a camera, if a simulated robot has none or several."""
     for robot in (it for it in plan.robots if it.spec.simulator != REAL and not it.spec.launch):
         nodes = plan.evidence_of(robot).nodes
         waiting = [it for it in nodes if it.origin.node_set and not (it.when or it.shared)]
@@ -113,8 +110,8 @@ _HINT = "start what does in its launch file, or write which name is meant as a r
 
 
 def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -> Iterator[Finding]:
-    """Yield what is open in a robot that is completely known, by its own ``system``. Another robot
-    may have a driver that no file names."""
+    """Yield what is open in a robot that is completely known, by its own ``system``."""
+    # Another robot may have a driver that no file names.
     # Is all known that it runs, some of it by its source?
     known = all(it.is_known and not it.untold for it in facts)
     by_source = any(" " in it.kind for it in facts)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with the launch files of one robot already, as its vendor starts them: a fleet of such
-robots has it as well, and is built."""
+"""Faults that one robot's launch files have already: a fleet has them too, and is built."""
 
 import os
 import re
@@ -47,16 +46,16 @@ class _Error(NamedTuple):
 def as_the_vendor_has_it(
     plan: FleetPlan, seen: Index, found: Iterable[Finding], known: Knowledge
 ) -> Iterator[Finding]:
-    """Yield the findings about a fleet (``seen``); an error that the launch files of one robot have by
-    themselves, between the same nodes, is a warning. What only several robots have stays an error."""
+    """Yield the findings about a fleet; errors of one robot's launch files are warnings."""
     specs = {it.spec.name: it for it in plan.robots if it.spec.launch}
     alone = cache(lambda robot: _errors_of(specs[robot], seen, known))
     for it in found:
         # What names no robot, as the interfaces of its hardware, is asked of all.
-        about = (_robots(it, seen) or specs.keys()) if it.level == ERROR else set[str]()
+        about = (_robots_of(it, seen) or specs.keys()) if it.level == ERROR else set[str]()
         robots = about & specs.keys()
         own = (
-            _is_of_one_name(it, seen, specs[robot]) or _is_in(alone(robot), it, seen, robot)
+            _is_of_one_name(it, seen, specs[robot])
+            or _is_error_of_robot(alone(robot), it, seen, robot)
             for robot in robots
         )
         if robots and all(own):
@@ -66,8 +65,7 @@ def as_the_vendor_has_it(
 
 
 def as_in_the_vendors_files(plan: FleetPlan, found: Iterable[Finding]) -> Iterator[Finding]:
-    """Yield the findings about a fleet; an error in a parameter file that goes with the launch files of
-    a robot, which that file has by itself, is a warning."""
+    """Yield the findings; errors of a launch's parameter file by itself are warnings."""
     launched_with = {
         os.path.realpath(path): path
         for robot in plan.robots
@@ -88,8 +86,8 @@ def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
 
 
 def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> list[_Error]:
-    """Return what is an error in the launch files of one robot. A publisher without a description that
-    can be read gets the one of the fleet file."""
+    """Return the errors in the launch files of one robot."""
+    # A publisher without a readable description gets the one of the fleet file.
     graph = launch_of(robot.spec.launch, robot.spec.words[0])
     started = launched(graph, known)
     if any(it.code == NO_TREE for it in started.system.environment.caveats):
@@ -99,8 +97,8 @@ def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> list[_E
     every = (*judge_launch(started), *(as_sure(it, started, alone) for it in judge(alone)))
     found = []
     for it in (it for it in every if it.level == ERROR):
-        parts = (part for own in _parts(it, started.system).values() for part in own)
-        found.append(_error(it, fleet)._replace(parts=_plain_parts(parts, fleet)))
+        parts = (part for own in _nodes_by_name(it, started.system).values() for part in own)
+        found.append(_plain_error(it, fleet)._replace(parts=_plain_parts(parts, fleet)))
     return found
 
 
@@ -114,15 +112,15 @@ def _with_description(graph: LaunchGraph, text: str) -> LaunchGraph:
     return graph._replace(nodes=tuple(nodes))
 
 
-def _is_in(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bool:
-    """Return whether a finding about a fleet is an error of this robot alone, which may name more.
-    Nodes of other robots have no part in it, nor nodes that its own launch files do not start."""
-    own = _error(it, seen)
+def _is_error_of_robot(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bool:
+    """Return whether a finding about a fleet is an error of this robot alone."""
+    # Nodes of other robots, or outside its launch files, have no part in it.
+    own = _plain_error(it, seen)
     alike = [one for one in errors if one.code == own.code and own.names <= one.names]
     known = {part for one in alike for part in one.parts}
     if not (own.names and alike):
         return False
-    for parts in _parts(it, seen.system).values():
+    for parts in _nodes_by_name(it, seen.system).values():
         whose = {seen.robot(node) for _, node in parts}
         if robot in whose and not (whose <= {robot, ""} and _plain_parts(parts, seen) <= known):
             return False
@@ -130,9 +128,9 @@ def _is_in(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bo
 
 
 def _is_of_one_name(it: Finding, seen: Index, robot: RewrittenRobot) -> bool:
-    """Is a finding about nodes of one robot that its launch files start under one name? In a fleet the
-    second one has a number behind its name."""
-    nodes = [node for parts in _parts(it, seen.system).values() for _, node in parts]
+    """Return whether launch files of a robot start the nodes of a finding under one name."""
+    # In a fleet the second one has a number behind its name.
+    nodes = [node for parts in _nodes_by_name(it, seen.system).values() for _, node in parts]
     names = {_SECOND.sub("", node.rpartition("/")[2]) for node in nodes}
     if len(names) != 1 or {seen.robot(node) for node in nodes} != {robot.spec.name}:
         return False
@@ -140,13 +138,13 @@ def _is_of_one_name(it: Finding, seen: Index, robot: RewrittenRobot) -> bool:
     return [node.name or node.executable for node in started].count(*names) > 1
 
 
-def _robots(it: Finding, seen: Index) -> set[str]:
+def _robots_of(it: Finding, seen: Index) -> set[str]:
     """Return the robots that a finding is about, by its nodes or else by its names."""
-    nodes = [node for parts in _parts(it, seen.system).values() for _, node in parts]
+    nodes = [node for parts in _nodes_by_name(it, seen.system).values() for _, node in parts]
     return {it.robot, *map(seen.robot, nodes or (it.node, *it.names))} - {""}
 
 
-def _error(it: Finding, fleet: Index) -> _Error:
+def _plain_error(it: Finding, fleet: Index) -> _Error:
     # What is said of words begins with their node.
     names = it.names or (it.node or it.message,)
     plain = (fleet.plain(it) if it.startswith("/") else fleet.plain_frame(it) for it in names)
@@ -157,7 +155,7 @@ def _plain_parts(parts: Iterable[_Part], fleet: Index) -> set[_Part]:
     return {(role, fleet.plain(node)) for role, node in parts}
 
 
-def _parts(it: Finding, system: System) -> Mapping[str, Set[_Part]]:
+def _nodes_by_name(it: Finding, system: System) -> Mapping[str, Set[_Part]]:
     """Return the nodes that have what a finding names: by name, transforms by their tf topic."""
     ends = ((end.name, (end.role, end.node)) for end in system.ends if end.name in it.names)
     edges = (edge for edge in system.edges if edge.child in it.names)

@@ -12,7 +12,7 @@ from multibot_rewrite.base.conventions import CLOCK, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.checks.lacking import lacking, without_camera
-from multibot_rewrite.checks.named_twice import named_twice
+from multibot_rewrite.checks.meeting import named_twice
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.readback.meeting import OPENED
@@ -79,8 +79,8 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _not_started(plan: FleetPlan) -> Iterator[Finding]:
-    """Yield the launch files' nodes that something else makes under their name: the plugin in a
-    simulator makes a controller manager named as ros2_control_node's."""
+    """Yield launched nodes that something else makes under their name."""
+    # A simulator's plugin makes a controller manager named as ros2_control_node's.
     table = plan.fleet.table
     for robot in plan.robots:
         started = {*names_of(table, robot.spec.namespace).started, *names_of(table, "").started}
@@ -103,8 +103,7 @@ def _two_simulators(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
-    """Yield simulated robots that use the time of the machine, with nodes that compare it with that
-    of their input: gz-sim's sensors have simulated time."""
+    """Yield simulated robots that use the machine's time, and nodes that compare times."""
     for robot in plan.robots:
         facts = plan.evidence_of(robot).nodes if robot.spec.use_sim_time is False else ()
         own = (it.name for it in facts if not (it.when or it.shared))
@@ -118,17 +117,16 @@ def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
-    """Yield the devices, addresses, numbers, calibrations and ports that two robots share, at the
-    second one, except values that were reported."""
+    """Yield what two robots share of devices, addresses, numbers and ports, and is not reported."""
     robots = plan.robots
     told = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     definitions = load_definitions(plan.file.definitions, plan.file.distro)
-    hardware = {it.spec.name: tuple(_of_hardware(it, told, definitions)) for it in robots}
+    hardware = {it.spec.name: tuple(_hardware_addresses(it, told, definitions)) for it in robots}
     by_name = {it.spec.name: it for it in robots}
     count = Counter((it.name, it.value) for its in hardware.values() for it in its)
     hints: dict[Sources, str] = {}
-    for it in _shared(robots, [one for its in hardware.values() for one in its]):
+    for it in _conflicts(robots, [one for its in hardware.values() for one in its]):
         sources = by_name[it.robot].spec.sources
         if sources not in hints:
             # How a robot gets its own of what others have, too.
@@ -141,12 +139,13 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     of_all = Counter(path for it in robots for path in it.spec.related_files.get("params", ()))
     # What a file for several robots has is told there, or numbered.
     shared = frozenset(path for path, count in of_all.items() if count > 1)
-    given = [one for it in robots for one in _of_nodes(it, plan.evidence_of(it), known, shared)]
-    given += [one for it in robots for one in _of_words(it, plan.evidence_of(it))]
-    yield from (_of_the_fleet(it, it.hint) for it in _shared(robots, given))
+    given = [one for it in robots for one in _in_nodes(it, plan.evidence_of(it), known, shared)]
+    given += [one for it in robots for one in _argument_addresses(it, plan.evidence_of(it))]
+    yield from (_of_the_fleet(it, it.hint) for it in _conflicts(robots, given))
 
 
-def _shared(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
+def _conflicts(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
+    """Yield the addresses that several robots use."""
     named = tuple(Robot(it.spec.name, namespace=it.spec.namespace) for it in robots)
     fleet = System(robots=named, addresses=tuple(addresses))
     found = judge(index(fleet, whose_by_plan(fleet))) if addresses else ()
@@ -157,10 +156,10 @@ def _of_the_fleet(it: Finding, hint: str) -> Finding:
     return it._replace(message=f"{it.node} {it.message}", hint=hint, node="", robot="")
 
 
-def _of_hardware(
+def _hardware_addresses(
     robot: RewrittenRobot, told: Collection[str], definitions: Definitions
 ) -> Iterator[Address]:
-    """Yield the addresses of a robot's devices, at its line of the fleet file; none if simulated."""
+    """Yield the addresses of a robot's devices; none if it is simulated."""
     spec = robot.spec
     if spec.simulator != "gazebo":
         node, place = f"/{spec.namespace}/{MANAGER}", Place(spec.file, spec.line, 1)
@@ -169,9 +168,10 @@ def _of_hardware(
         yield from (it for it in found if it.value not in told)
 
 
-def _of_nodes(
+def _in_nodes(
     robot: RewrittenRobot, evidence: RobotEvidence, known: KnownNodes, shared: Collection[str]
 ) -> Iterator[Address]:
+    """Yield the addresses in the parameters of a robot's nodes."""
     for node in evidence.given:
         facts = known.nodes.get(node.fact.known)
         own = {name: it for name, it in node.values.items() if it.place.file not in shared}
@@ -181,7 +181,7 @@ def _of_nodes(
         yield from (it for it in found if it.kind != DEVICE or not simulated)
 
 
-def _of_words(robot: RewrittenRobot, evidence: RobotEvidence) -> Iterator[Address]:
+def _argument_addresses(robot: RewrittenRobot, evidence: RobotEvidence) -> Iterator[Address]:
     """Yield the addresses in the arguments of nodes and processes of launch files."""
     spec = robot.spec
     rows = [(name, it.arguments, it.place) for name, it in evidence.handed_on.items()]
@@ -192,10 +192,9 @@ def _of_words(robot: RewrittenRobot, evidence: RobotEvidence) -> Iterator[Addres
 
 
 def _too_near(plan: FleetPlan) -> Iterator[Finding]:
-    """Yield the simulated robots that start inside another one. A robot turns in its place, so half
-    of what the larger one reaches is allowed: what is found overlaps however they are turned. A
-    fleet that is all at the origin is a warning: somebody else may place it, but the launch file of
-    a build does not."""
+    """Yield the simulated robots that start inside another one, or all at the origin."""
+    # A robot turns in its place, so half of the larger one's reach is allowed. Somebody else may
+    # place a fleet, but the launch file of a build does not.
     robots = [it for it in plan.robots if is_simulated(it)]
     if not any(any(_start_at(it.spec)) for it in robots):
         if len(robots) > 1:
@@ -250,8 +249,8 @@ SDF_ALONE = declare("MF712", "sdf-for-state-publisher", WARNING, formats=("fleet
 
 
 def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:
-    """Yield the robots whose robot_state_publisher gets an SDF: robot_state_publisher.cpp reads it
-    by urdf::Model, which asks the parsers that are installed."""
+    """Yield the robots whose robot_state_publisher gets an SDF."""
+    # robot_state_publisher.cpp reads it by urdf::Model, which asks the installed parsers.
     published = {it.name for it in plan.fleet.facts if it.package == STATE_PUBLISHER}
     runs = {it.robot for it in plan.fleet.table.runs if it.node in published}
     for robot in plan.robots:
@@ -276,7 +275,7 @@ def differences(plan: FleetPlan) -> Iterator[Finding]:
                 message = f"what the simulator gets of {robot.spec.name} {what} {shorten(lacking)}"
                 hint = "nothing in the simulator sends their states; give both files the same names"
                 yield at_robot(DIFFERENT, robot, message, hint)
-            yield from _of_frames(robot)
+            yield from _unknown_frames(robot)
 
 
 def _moving(inventory: Inventory) -> list[str]:
@@ -289,7 +288,7 @@ def _moving(inventory: Inventory) -> list[str]:
     ]
 
 
-def _of_frames(robot: RewrittenRobot) -> Iterator[Finding]:
+def _unknown_frames(robot: RewrittenRobot) -> Iterator[Finding]:
     names = robot.names._replace(robot=robot.spec.tag)
     usual = (spell(names, "frame", it) for it in USUAL_FRAMES)
     known = {*robot.links, *names.naming.shared_frames, *usual}
@@ -307,9 +306,8 @@ def _of_frames(robot: RewrittenRobot) -> Iterator[Finding]:
 
 
 def _launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
-    """Yield wrong prefixes of frames that a launch file gives the robot_state_publisher, of the first
-    robot of each kind (robot_state_publisher src/robot_state_publisher.cpp: it is put before each
-    frame; tf2 takes a leading slash away)."""
+    """Yield wrong frame prefixes that launch files give to robot_state_publisher."""
+    # It is put before each frame; tf2 takes a leading slash away (robot_state_publisher.cpp).
     for key, found in plan.evidence.items():
         robot = next(it for it in plan.robots if node_sources(it.spec) == key)
         # What its own robot_state_publisher gets; there may be another one, as of a dock.

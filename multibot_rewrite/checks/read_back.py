@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A built fleet is read back as a machine would that knows nothing of it: the launch file, and what
-that names. Then it is compared with the plan that was built, and asked the rules.
+"""Reads a built fleet back by its launch file, compares it with the plan and asks the rules.
 
-Source: what launch does with the file, by the producer of launch files; files are looked for where the
-launch file names them.
-"""
+Source: what launch does with the file, by the producer of launch files; files are looked for
+where the launch file names them."""
 
 from __future__ import annotations
 
@@ -17,7 +15,7 @@ from tempfile import TemporaryDirectory
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.checks.as_planned import is_for_driver, not_as_planned, open_names
+from multibot_rewrite.checks.as_planned import not_as_planned, open_names
 from multibot_rewrite.checks.as_printed import not_as_commanded, not_as_printed
 from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.checks.lacking import LACKING
@@ -69,23 +67,23 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
     with _temporary_folder() as home, gc_paused():
         launch = next(it.data for it in made.files if it.path == LAUNCH)
         printed = not_as_printed(made.starts, launch, home)
-        wrong = [_fault(it.message, it.place, os.path.realpath(home)) for it in printed]
+        wrong = [_not_whole(it.message, it.place, os.path.realpath(home)) for it in printed]
         commands = next(it.text for it in made.files if it.path == COMMANDS)
         told = not_as_commanded(made.starts, commands)
-        wrong += [_fault(it, Place(COMMANDS, 1), home) for it in told]
-    return [*dict.fromkeys((*wrong, *_of_files(plan, made, folder)))]
+        wrong += [_not_whole(it, Place(COMMANDS, 1), home) for it in told]
+    return [*dict.fromkeys((*wrong, *_findings_of_sample(plan, made, folder)))]
 
 
-def _of_files(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
+def _findings_of_sample(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
     sample = two_of_each(made, [it.spec for it in plan.robots])
-    found, graph = _read(plan, sample.made, folder)
+    found, graph = _read_launch(plan, sample.made, folder)
     alone = all(it.robots or it.robot in sample.alike for it in found)
     if sample.left and (not alone or names_one_of(graph, sample.left)):
-        return _read(plan, made, folder)[0]
+        return _read_launch(plan, made, folder)[0]
     return [it._replace(robots=it.robots or sample.alike.get(it.robot, ())) for it in found]
 
 
-def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], LaunchGraph]:
+def _read_launch(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], LaunchGraph]:
     with _temporary_folder() as above, gc_paused():
         home, own = os.path.join(above, "built"), os.path.join(above, "launch")
         os.makedirs(own)
@@ -99,12 +97,12 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         try:
             graph = read_own(os.path.join(home, LAUNCH), own)
         except UnreadableError as error:
-            return [_fault(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
+            return [_not_whole(f"{error}", Place(LAUNCH, 1), home)], LaunchGraph()
         # What is not here is started as the sources have it.
         packages = {it.package for it in made.starts.every if it.process.is_include}
         notes = (it for it in graph.notes if it.missing not in packages)
         graph = graph._replace(notes=tuple(notes))
-        known = _known(plan)
+        known = _fleet_knowledge(plan)
         start = launched(graph, known)
         seen = start.system
         real = frozenset(it.spec.name for it in plan.robots if it.spec.simulator == REAL)
@@ -125,20 +123,22 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         shared = {*made.planned.shared_topics}
         alone = [
             it
-            for it in _of_launch(start, by_plan, codes, elsewhere)
+            for it in _launch_errors(start, by_plan, codes, elsewhere)
             # Robots may share a topic which the fleet file shares.
             if it.code not in (COMMAND, DATA) or not {*it.names} <= shared
-            if it.robot not in real or not is_for_driver(it, made.planned, started)
         ]
         alone = _not_open(alone, made)
         # What is an error without the plan is one line, of that level.
         errors = {(it.code, it.robot) for it in alone if it.robot}
         wrong = [it for it in wrong if (it.code, it.robot) not in errors] + alone
+        # What two robots both have by their descriptions is one line, with what to do.
+        both = {it.names for it in plan.fleet.table.problems if it.level == ERROR and it.names}
+        wrong = [it for it in wrong if it.names not in both]
         if any(it.code == NO_MANAGER.code for it in wrong):
-            remedy = _remedy(plan)
+            remedy = _manager_hint(plan)
             wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]
         wrong = [*as_the_vendor_has_it(plan, index(seen, by_plan), wrong, known)]
-        lost = [*_lost(graph, seen, home)]
+        lost = [*_missing_parts(graph, seen, home)]
         for found in wrong:
             texts = (found.file, found.message, found.hint)
             file, message, hint = (text.replace(f"{home}/", "") for text in texts)
@@ -146,12 +146,12 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         return lost, graph
 
 
-def _of_launch(
+def _launch_errors(
     found: Launched, whose: Whose, told: Set[str], elsewhere: Set[str]
 ) -> Iterator[Finding]:
-    """Yield the errors of ``multibot check-launch`` that the build has not ``told``, except for
-    names given ``elsewhere``. Descriptions and parameters were checked in the sources. ``whose`` is
-    by the plan: a robot may have other names in frames than in topics."""
+    """Yield the errors of ``multibot check-launch`` that the build has not ``told``."""
+    # Descriptions and parameters were checked in the sources, names ``elsewhere`` are known.
+    # ``whose`` is by the plan: a robot may have other names in frames than in topics.
     from multibot_rewrite.lint.launched import bridge_findings
 
     seen = index(found.system, whose)
@@ -163,7 +163,7 @@ def _of_launch(
 
 
 def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
-    """Return the findings without what nothing sends by the plan either: robots may differ."""
+    """Return the findings, except missing senders that the plan does not have either."""
     code = nothing_known_sends.code
     if all(it.code != code for it in found):
         return found
@@ -173,9 +173,8 @@ def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
     ]
 
 
-def _remedy(plan: FleetPlan) -> str:
-    """Return what to write where nothing starts a controller manager: the argument of a description
-    with which a simulator's plugin makes one, else the node set that has one."""
+def _manager_hint(plan: FleetPlan) -> str:
+    """Return what to write if nothing starts a controller manager: an argument, or a node set."""
     for it in (it.spec for it in plan.robots):
         given = filled(it.arguments, it.name)
         if found := switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED):
@@ -185,7 +184,7 @@ def _remedy(plan: FleetPlan) -> str:
     return "add ros2_control to `node_sets:`, which starts it; or load gz_ros2_control in it"
 
 
-def _known(plan: FleetPlan) -> Knowledge:
+def _fleet_knowledge(plan: FleetPlan) -> Knowledge:
     """Return what is known of nodes in the fleet's release, by its file and NoDL documents too."""
     file = plan.file
     facts = known_nodes(file.nodes, file.distro, file.nodl)
@@ -207,12 +206,12 @@ def _temporary_folder() -> Iterator[str]:
         raise MultibotError(f"a temporary file{file} cannot be written: {reason}") from None
 
 
-def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
+def _missing_parts(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
     """Yield missing files of the launch file, nodes without description, and what rcl refuses."""
     for note in graph.notes:
         # A file that a plugin names and that is no file of the fleet is told where it is rewritten.
         if not note.parameters or note.file.startswith(f"{home}/"):
-            yield _fault(note.message, note.place, home)
+            yield _not_whole(note.message, note.place, home)
     for it in graph.nodes:
         # The files of the folder that it is given: as a word, or as the value of a parameter.
         paths = [word for word in it.arguments if word.startswith(f"{home}/")]
@@ -220,12 +219,12 @@ def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
             paths += re.findall(rf"(?m)^ +[\w.]+: '?({re.escape(home)}/[^\n']+)'?$", text)
         for path in paths:
             if not os.path.exists(path):
-                yield _fault(f"{path} is not there", it.place, home)
+                yield _not_whole(f"{path} is not there", it.place, home)
     for caveat in seen.environment.caveats:
         if caveat.code in (REFUSED, NO_TREE):
-            yield _fault(caveat.message, Place(LAUNCH, 1), home)
+            yield _not_whole(caveat.message, Place(LAUNCH, 1), home)
 
 
-def _fault(message: str, place: Place, home: str) -> Finding:
+def _not_whole(message: str, place: Place, home: str) -> Finding:
     file, text = (it.replace(f"{home}/", "") for it in (place.file, message))
     return NOT_WHOLE.finding(text, _HINT, level=ERROR, file=file, line=place.line)

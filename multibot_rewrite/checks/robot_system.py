@@ -28,11 +28,11 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.planning.of_runs import ends_of, lookups_of, with_names
-from multibot_rewrite.planning.plan import tf_topic
+from multibot_rewrite.planning.planned_system import tf_topic
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.table import plugin_nodes
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, sent_by, tree_joints
-from multibot_rewrite.planning.way_checks import is_stand_in
+from multibot_rewrite.planning.way_checks import is_controller_topic
 from multibot_rewrite.planning.ways import merged
 from multibot_rewrite.producers.ends import (
     BRIDGE_FILE,
@@ -87,8 +87,7 @@ DRIVERS = Environment(caveats=(Caveat(UNKNOWN_NODES, True, _MAY_RUN),))
 
 
 def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None = None) -> System:
-    """Return the system of a robot's sources, if it were alone: nothing is renamed or remapped but
-    what the usual launch files remap."""
+    """Return the system of a robot's sources, alone, with only the rules of usual launch files."""
     source, given = robot.member.source, evidence.given
     moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
     nodes = []
@@ -100,7 +99,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     real = robot.spec.simulator == REAL
     text = without_simulator(source.source, source.file) if real else source.source
     reading = read(text, source.file, robot.member.definitions)
-    plain = [_plainly(robot, it) for it in given]
+    plain = [_plain_run(robot, it) for it in given]
     sections = {it.node: it for it in plain}
     alone = []
     for run in (run_alone(it, sections.get(it.name)) for it in nodes):
@@ -111,7 +110,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     plugins = []
     for it in plugin_nodes(reading, ""):
         # What one with a controller manager would publish, its controllers do.
-        kept = tuple(end for end in it.fact.endpoints if not is_stand_in(it, end))
+        kept = tuple(end for end in it.fact.endpoints if not is_controller_topic(it, end))
         plugins.append(with_names(it._replace(fact=it.fact._replace(endpoints=kept))))
     tree = [it for _, it in tree_joints(robot.member.sent.root)]
     children = {it.child for it in tree}
@@ -124,7 +123,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     inside = [it for it in other if all(it not in own for own in sent.values())]
     moved = {child for node in nodes for child in children_of(node)}
     moved |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
-    edges = [*_edges(robot, tree, sent, runs, inside=inside)]
+    edges = [*_transform_edges(robot, tree, sent, runs, inside=inside)]
     edges += (it for it in edges_off(given, evidence.known) if it.child not in moved)
     # What a file asks is told at its place.
     order = {name: at for at, name in enumerate(sections)}
@@ -141,34 +140,35 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
         for row in bridge_ends(it, robot.spec.bridge_namespace_of(it.file))
     )
     own = _system((*runs, *plugins), rows, edges)._replace(lookups=tuple(lookups))
-    exports = (_plain(robot, it) for it in exported(source.root, source.file))
-    own = _controlled(own, plain, evidence, exports, _documents(robot, "moveit"), said)
+    exports = (_plain_export(robot, it) for it in exported(source.root, source.file))
+    own = _with_interfaces(own, plain, evidence, exports, _documents(robot, "moveit"), said)
     return beside(own, _system(it for it in alone if it.fact.shared))
 
 
 def as_written(fleet: Fleet, robot: RewrittenRobot, texts: Sequence[OutputFile]) -> System:
-    """Return what runs on a robot by the files that were made, with the places in the sources;
+    """Return what runs on a robot by the written files, with places in the sources.
+
     ``fleet`` has the nodes and transforms of this robot alone."""
     name, topic = robot.spec.namespace, tf_topic(robot.spec.namespace, fleet.naming)
     runs, home = fleet.table.runs, f"/{name}"
     sent = {node: edges for (_, node), edges in fleet.edges.items()}
-    inside = () if name in fleet.placed else _simulated(robot)
-    edges = _edges(robot, robot.tree, sent, runs, home, topic, inside)
+    inside = () if name in fleet.placed else _simulator_edges(robot)
+    edges = _transform_edges(robot, robot.tree, sent, runs, home, topic, inside)
     bridges = [it for it in texts if it.path == gz_bridge_path(robot)]
-    made = _system(runs, _rows(bridges, home), edges)
+    made = _system(runs, _bridge_ends(bridges, home), edges)
     # Rules of a plugin are for its whole process: topics of controllers that the table does not have.
     plugins = map(with_names, plugin_nodes(robot.member.reading, name))
     by_process = (it for it in _system(plugins).ends if it.sure != RUNS)
     return made._replace(
         ends=(*made.ends, *by_process),
         robots=(Robot(robot.spec.name),),
-        heard=tuple(_heard(fleet, robot, bridges)),
+        heard=tuple(_heard_frames(fleet, robot, bridges)),
     )
 
 
 def of_all_robots(runs: Iterable[Run], texts: Iterable[OutputFile]) -> System:
     """Return the system of the nodes for all robots of a fleet, as they are written."""
-    return _system(runs, _rows((it for it in texts if it.path == BRIDGE_FILE), ""))
+    return _system(runs, _bridge_ends((it for it in texts if it.path == BRIDGE_FILE), ""))
 
 
 def with_controllers(
@@ -186,7 +186,7 @@ def with_controllers(
     said = _semantics(robot.srdf, path, written.root)
     exports = exported(written.root, robot.member.source.file)
     moveit = (it.yaml for it in own if SIMPLE in it.text)
-    return _controlled(system, given, evidence, exports, moveit, said)
+    return _with_interfaces(system, given, evidence, exports, moveit, said)
 
 
 def beside(own: System, shared: System) -> System:
@@ -196,8 +196,7 @@ def beside(own: System, shared: System) -> System:
 
 
 def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge] = ()) -> System:
-    """Return the system of running nodes, of rows of bridges, which may be for one direction each,
-    and of the transforms that they send."""
+    """Return the system of running nodes, rows of bridges and transforms."""
     running, bridged = [*runs], [*rows]
     nodes = {}
     for run in merged(running):
@@ -219,7 +218,7 @@ def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge]
     return System(tuple(nodes.values()), tuple(ends), tuple(edges), DRIVERS)
 
 
-def _rows(bridges: Iterable[OutputFile], home: str) -> Iterator[End]:
+def _bridge_ends(bridges: Iterable[OutputFile], home: str) -> Iterator[End]:
     """Yield the ends of bridges that run in a namespace."""
     for text in bridges:
         for it in bridge_ends(text.yaml):
@@ -227,7 +226,7 @@ def _rows(bridges: Iterable[OutputFile], home: str) -> Iterator[End]:
             yield it._replace(node=f"{home}/{BRIDGE_NODE}", place=place)
 
 
-def _edges(
+def _transform_edges(
     robot: RewrittenRobot,
     tree: Sequence[Edge],
     sent: Mapping[str, Iterable[Edge]],
@@ -236,8 +235,7 @@ def _edges(
     topic: str = TF,
     inside: Iterable[Edge] = (),
 ) -> Iterator[Edge]:
-    """Yield the transforms of a description, those of a bridge from ``inside`` the simulator, and
-    those that other nodes send, by their names in the node set."""
+    """Yield the transforms of a description, of nodes, and bridged from ``inside`` a simulator."""
     nodes = {it.node: it for it in runs}
     described = nodes.get(STATE_PUBLISHER)
     publisher = described.full_name if described else f"{home}/{STATE_PUBLISHER}"
@@ -253,7 +251,7 @@ def _edges(
         yield from (edge(it, sender, place, topic) for it in own if it not in in_tree)
 
 
-def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
+def _simulator_edges(robot: RewrittenRobot) -> Iterator[Edge]:
     """Yield the transforms of gz-sim's drive and odometry systems, which the bridge brings to tf."""
     for host, section in robot.member.inventory.served:
         sites = frame_sites(host, section, robot.names.naming)
@@ -262,9 +260,11 @@ def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
             yield edge_of(given[0], given[1])
 
 
-def _heard(fleet: Fleet, robot: RewrittenRobot, bridges: Iterable[OutputFile]) -> Iterator[Heard]:
-    """Yield the frames of a robot's bridged sensors whose description names none; those that it
-    names are compared with its links."""
+def _heard_frames(
+    fleet: Fleet, robot: RewrittenRobot, bridges: Iterable[OutputFile]
+) -> Iterator[Heard]:
+    """Yield the frames of a robot's bridged sensors whose description names none."""
+    # Those that it names are compared with its links.
     if robot.spec.simulator == REAL:
         return
     roots = (fleet.inventories[robot.spec.namespace].document.root, robot.member.source.root)
@@ -283,7 +283,7 @@ def _semantics(data: bytes, file: str, root: _Element) -> Semantics:
     return semantics(read_document(data, file).root, root, file) if data else Semantics((), ())
 
 
-def _controlled(
+def _with_interfaces(
     system: System,
     given: Sequence[Run],
     evidence: RobotEvidence,
@@ -297,14 +297,14 @@ def _controlled(
     return system._replace(controllers=made.controllers, interfaces=(*made.interfaces, *planned))
 
 
-def _own(robot: RewrittenRobot) -> Mapping[str, str]:
-    """Return by what an argument makes the name without it, which may begin with a slash: /imu."""
+def _names_by_argument_text(robot: RewrittenRobot) -> Mapping[str, str]:
+    """Return names without a xacro argument, by the names with it."""
     return {text: name.lstrip("/") for (_, name), text in robot.names.own.items()}
 
 
-def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
+def _plain_export(robot: RewrittenRobot, export: Exported) -> Exported:
     """Return the interface as parameter files call it, if an xacro argument renames its owner."""
-    own = _own(robot)
+    own = _names_by_argument_text(robot)
     # A name may have a slash of its own: robot1/imu.
     whole = (it for it in own if export.name.startswith(f"{it}/"))
     owner = next(whole, export.name.partition("/")[0])
@@ -315,9 +315,9 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     return export._replace(name=f"{bare}{export.name[len(owner) :]}")
 
 
-def _plainly(robot: RewrittenRobot, given: Run) -> Run:
-    """Return a node's parameters without what a launch argument makes, which a launch file fills in."""
-    own = _own(robot)
+def _plain_run(robot: RewrittenRobot, given: Run) -> Run:
+    """Return a node's parameters without what a launch file's argument fills in."""
+    own = _names_by_argument_text(robot)
     own = {**{name: own[text] for (_, name), text in robot.names.own.items()}, **own}
     values = {}
     for key, it in given.values.items():
@@ -331,4 +331,5 @@ def _plainly(robot: RewrittenRobot, given: Run) -> Run:
 
 
 def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
+    """Return the robot's related files of a kind."""
     return [own_yaml(robot.spec, path) for path in robot.spec.related_files.get(kind, ())]

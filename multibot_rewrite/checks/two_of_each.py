@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A built fleet with two robots of each sort: what is wrong with any of its files shows there.
+"""Takes two robots of each sort of a built fleet: faults of its files show there.
 
 Robots are of one sort where the files, the part of the launch file and the part of the plan of one are
 those of the other with its own words put in; numbers may differ as their poses do. A fault in one file
@@ -40,8 +40,9 @@ class _Sort(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """The outputs with two robots of each sort. ``left`` are the words of the robots that are left out,
-    ``alike`` has for each other one those of its sort, its own first."""
+    """The outputs with two robots of each sort; ``left`` are the words of the others.
+
+    ``alike`` has for each robot that stays those of its sort, its own name first."""
 
     made: Outputs
     left: frozenset[str] = frozenset()
@@ -58,8 +59,8 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
         return Sample(made)
     files = {it.path: it for it in made.files}
     launch, plan = (files[it].text if it in files else "" for it in (LAUNCH, PLAN))
-    parts, plans = _by_name(_FUNCTION, launch), _by_name(_PLANNED, plan)
-    rows = _by_name(_ROW, launch.partition(_TABLE)[2])
+    parts, plans = _parts_by_name(_FUNCTION, launch), _parts_by_name(_PLANNED, plan)
+    rows = _parts_by_name(_ROW, launch.partition(_TABLE)[2])
     sorts: list[_Sort] = []
     of_sort: dict[int, list[RobotSpec]] = defaultdict(list)
     for it in robots:
@@ -67,7 +68,7 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
         is_whole = bool(part) == (f"start_{it.name}" in row)
         if not (row and is_whole and it.name in plans):
             return Sample(made)
-        own = _sort(it, (row, part, plans[it.name]), files)
+        own = _sort_of(it, (row, part, plans[it.name]), files)
         at = next((at for at, one in enumerate(sorts) if _are_alike(one, own)), len(sorts))
         sorts += [own] if at == len(sorts) else []
         of_sort[at].append(it)
@@ -90,11 +91,11 @@ def names_one_of(graph: LaunchGraph, words: Collection[str]) -> bool:
     return any(map(found.search, texts))
 
 
-def _by_name(pattern: re.Pattern[str], text: str) -> dict[str, str]:
+def _parts_by_name(pattern: re.Pattern[str], text: str) -> dict[str, str]:
     return {it[1]: it[0] for it in pattern.finditer(text)}
 
 
-def _sort(it: RobotSpec, parts: Iterable[str], files: Mapping[str, OutputFile]) -> _Sort:
+def _sort_of(it: RobotSpec, parts: Iterable[str], files: Mapping[str, OutputFile]) -> _Sort:
     named = {path for part in parts for path in _FILE.findall(part) if path in files}
     own = sorted({*named, *(path for path in files if path.startswith(f"{it.name}/"))})
     texts = (files[path].text for path in own if not path.endswith(_NOT_READ))
@@ -113,11 +114,11 @@ def _are_alike(one: _Sort, other: _Sort) -> bool:
     if len(one.texts) != len(other.texts):
         return False
     pairs = zip(one.texts, other.texts, strict=True)
-    return all(ours == theirs or _but_for(poses, ours, theirs) for ours, theirs in pairs)
+    return all(ours == theirs or _same_but_pose(poses, ours, theirs) for ours, theirs in pairs)
 
 
-def _but_for(poses: Collection[tuple[float, float]], one: str, other: str) -> bool:
-    """Return whether two texts are the same but for numbers of the poses."""
+def _same_but_pose(poses: Collection[tuple[float, float]], one: str, other: str) -> bool:
+    """Return whether two texts are equal except for numbers of the poses."""
     ours, theirs = _NUMBER.split(one), _NUMBER.split(other)
     if len(ours) != len(theirs) or ours[::2] != theirs[::2]:
         return False
@@ -137,11 +138,11 @@ def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
         if it.path == LAUNCH:
             above, table, rows = _FUNCTION.sub(kept, it.text).partition(_TABLE)
             files[at] = it._replace(data=f"{above}{table}{_ROW.sub(kept, rows)}".encode())
-    planned = _planned(made.planned, names)
+    planned = _plan_without(made.planned, names)
     return made._replace(files=tuple(files), planned=planned) if left else made
 
 
-def _planned(plan: System, robots: Collection[str]) -> System:
+def _plan_without(plan: System, robots: Collection[str]) -> System:
     """Return the plan without some robots, and without what only they have."""
     names = {it.name for it in plan.nodes if it.robot in robots}
     gone: dict[str, bool] = defaultdict(lambda: True)

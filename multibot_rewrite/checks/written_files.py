@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the rules of files find in those of a fleet, and in those that a build writes: MoveIt's, and the
-bridge of each robot."""
+"""What the rules of files find in a fleet's files, and in written MoveIt files and bridges."""
 
 from __future__ import annotations
 
@@ -46,8 +45,7 @@ def checked(plan: FleetPlan, made: FilesToCheck) -> FilesAndFindings:
 def wrong_in_file(
     plan: FleetPlan, file: NamedFile, robots: Sequence[RewrittenRobot]
 ) -> list[Finding]:
-    """Return what all rules find in a file for some robots, with what a fleet knows: its robots'
-    names, frames that its nodes send, and related files."""
+    """Return what all rules find in a file for some robots, with what the fleet knows."""
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     words = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
     own = frozenset(robots[0].spec.words if len(robots) == 1 else ())
@@ -68,8 +66,9 @@ def of_files(found: Iterable[Finding]) -> set[Finding]:
 def written_findings(
     plan: FleetPlan, group: RobotGroup, texts: Sequence[OutputFile], known: Collection[Finding]
 ) -> Iterator[Finding]:
-    """Yield what is wrong with the written files of a robot, at the lines of their sources; an
-    error if only the rewrite has made it. ``known`` is what was found in the sources."""
+    """Yield faults of a robot's written files, at their sources; errors if the rewrite made them.
+
+    ``known`` is what was found in the sources."""
     robot, context = group.robots[0], group.context
     own = [it for it in texts if it.path.startswith(f"{robot.spec.name}/") and it.sources]
     bridges = [it for it in own if it.path == f"{robot.spec.name}/{BRIDGE_FILE}"]

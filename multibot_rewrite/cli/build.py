@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
     if options.undo:
-        return _undone(options)
+        return _remove_build(options)
     check_report(options, printed=False)
     choice = Choice(number=asked_number(options))
     fleet = read_fleet(options.fleet, options.distro or "", os.environ, choice)
@@ -75,11 +75,11 @@ def run(options: argparse.Namespace) -> int:
     if report_findings_too(options, chosen(options, ordered), about):
         say("nothing was written", PROGRAM)
         return STOPPED
-    read = _read(plan, made.files)
+    read = _input_files(plan, made.files)
     files = [*made.files, manifest(made.files, read, options.output, plan)]
     _check_inputs(options.output, files, {*read, *input_files(plan.file), *plan.fleet.read})
     with locked(options.output):
-        known = _known(options.output)
+        known = _known_hashes(options.output)
         there = _existing_hashes(options.output, {*known, *(it.path for it in files)})
         found = output_changes(files, known, there)
         if options.check:
@@ -87,10 +87,10 @@ def run(options: argparse.Namespace) -> int:
         why = not_verified({*made.findings, *plan.fleet.table.problems})
         end = f"; not verified: {', '.join(why)}" if why else ""
         end = f"{end}{facts_of_release(plan.file.distro, plan.file.why)}"
-        return _written(options, files, found, held, end)
+        return _write_changes(options, files, found, held, end)
 
 
-def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
+def _input_files(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
     """Return the files that a build was made from, by path."""
     paths = {path for it in files for path in it.sources} | set(plan.file.files)
     paths |= {it.interface for it in plan.fleet.facts if it.interface}
@@ -113,15 +113,15 @@ def _check_folder(folder: str) -> None:
         raise UsageError(f"{folder}: it is a file; name a folder")
 
 
-def _known(folder: str) -> dict[str, str]:
+def _known_hashes(folder: str) -> dict[str, str]:
     """Return hashes of the files that the last build made, and that a killed build has made so far."""
-    found = _of_manifest(folder, MANIFEST)
-    begun = _of_manifest(folder, NOTE)
+    found = _manifest_hashes(folder, MANIFEST)
+    begun = _manifest_hashes(folder, NOTE)
     there = _existing_hashes(folder, begun)
     return {**found, **{path: it for path, it in begun.items() if there.get(path) == it}}
 
 
-def _of_manifest(folder: str, name: str) -> dict[str, str]:
+def _manifest_hashes(folder: str, name: str) -> dict[str, str]:
     path = os.path.join(folder, name)
     if not os.path.exists(path):
         return {}
@@ -148,7 +148,7 @@ def _report_stale(options: argparse.Namespace, found: OutputChanges) -> int:
     return DONE
 
 
-def _written(
+def _write_changes(
     options: argparse.Namespace,
     files: Sequence[OutputFile],
     found: OutputChanges,
@@ -157,8 +157,8 @@ def _written(
 ) -> int:
     """Write what changed, and sum up; ``end`` is the end of that line."""
     if not options.force:
-        _refuse(options.output, found.foreign, "no build made it")
-        _refuse(options.output, found.edited, "it was edited since it was built")
+        _refuse_overwriting(options.output, found.foreign, "no build made it")
+        _refuse_overwriting(options.output, found.edited, "it was edited since it was built")
     check_inside(options.output, (*found.write, *found.remove))
     clear_leftovers(options.output)
     data = {it.path: it.data for it in files}
@@ -177,16 +177,16 @@ def _written(
     return DONE
 
 
-def _undone(options: argparse.Namespace) -> int:
+def _remove_build(options: argparse.Namespace) -> int:
     """Remove what a build wrote; files that it did not write stay."""
     folder = options.output
     with locked(folder):
-        known = _known(folder)
+        known = _known_hashes(folder)
         if not known:
             raise UsageError(f"{folder}: no build wrote into it, so there is nothing to undo")
         found = output_changes((), known, _existing_hashes(folder, known))
         if not options.force:
-            _refuse(folder, found.edited, "it was edited since it was built")
+            _refuse_overwriting(folder, found.edited, "it was edited since it was built")
         check_inside(folder, found.remove)
         change_folder(folder, {}, found.remove, (NOTE, b""))
         with suppress(OSError):
@@ -195,7 +195,7 @@ def _undone(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _refuse(folder: str, paths: Sequence[str], why: str) -> None:
+def _refuse_overwriting(folder: str, paths: Sequence[str], why: str) -> None:
     if paths:
         more = f" (and {len(paths) - 1} more)" if len(paths) > 1 else ""
         where = os.path.join(folder, paths[0])

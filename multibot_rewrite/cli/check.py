@@ -26,8 +26,11 @@ from multibot_rewrite.planning.plan import is_fleet, read_plan, robot_words
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
+from multibot_rewrite.rules.with_plan import subject_of
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import by_domain, side_by_side
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import System, answering, doubts
 
 
@@ -39,8 +42,8 @@ def run(options: argparse.Namespace) -> int:
 
         return unplanned.run(options, several)
     _check_use(options)
-    plan, before = plan_of(options), _before(options)
-    parts = _looked_at(options, plan, several)
+    plan, before = plan_of(options), _earlier_snapshot(options)
+    parts = _plan_by_domain(options, plan, several)
     if options.watch:
         if len(parts) == 1:
             ((domain, plan),) = parts.items()
@@ -48,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         plan = _with_files(options, plan) if options.state else plan
         return _watch(options, plan, [*parts], before)
     if parts and not options.bag:
-        return _apart(options, plan, parts)
+        return _check_domains(options, plan, parts)
     if options.bag:
         from multibot_rewrite.producers.bags.read import read_bag
 
@@ -58,12 +61,12 @@ def run(options: argparse.Namespace) -> int:
     graph = live.graph(options, judge=lambda it: check(plan, it, before=before))
     if options.state or answering(graph):
         plan = _with_files(options, plan)
-    graph = live.with_states(options, graph, _parameters(plan))
+    graph = live.with_states(options, graph, _asked_parameters(plan))
     return conclude(options, plan, graph, check(plan, graph, before=before))
 
 
-def _before(options: argparse.Namespace) -> System | None:
-    """Return the earlier look that PLAN is; None for a plan or a fleet file."""
+def _earlier_snapshot(options: argparse.Namespace) -> System | None:
+    """Return the earlier snapshot that PLAN is; None for a plan or a fleet file."""
     if recognised(read_file(options.plan, MAX_FLEET_BYTES)) != SNAPSHOT:
         return None
     from multibot_rewrite.producers.snapshot_file import read_snapshot
@@ -71,11 +74,12 @@ def _before(options: argparse.Namespace) -> System | None:
     return read_snapshot(options.plan)
 
 
-def _looked_at(
+def _plan_by_domain(
     options: argparse.Namespace, plan: System, several: Sequence[int]
 ) -> Mapping[int, System]:
-    """Return the plan for each domain that is checked, empty for one plan for all. A plan of one domain
-    holds for each that is named: for robots that are alike and have no names."""
+    """Return the plan for each domain that is checked; empty for one plan for all."""
+    # A plan of one domain holds for each that is named: for robots that are alike and have no
+    # names.
     parts = by_domain(plan)
     if not parts:
         return dict.fromkeys(several, plan)
@@ -87,12 +91,12 @@ def _looked_at(
     return {it: parts[it] for it in asked} or parts
 
 
-def _apart(options: argparse.Namespace, plan: System, parts: Mapping[int, System]) -> int:
+def _check_domains(options: argparse.Namespace, plan: System, parts: Mapping[int, System]) -> int:
     """Check all domains of a plan with robots in several domains; returns the exit code."""
     seen = live.graphs(options, parts)
     if options.state or any(map(answering, seen.values())):
         plan = _with_files(options, plan)
-    asked = _parameters(plan)
+    asked = _asked_parameters(plan)
     seen = {it: live.with_states(live.at(options, it), seen[it], asked) for it in seen}
     return conclude(options, plan, side_by_side(seen), check_domains(plan, seen))
 
@@ -104,7 +108,7 @@ def _with_files(options: argparse.Namespace, plan: System) -> System:
     return with_built(plan, os.path.dirname(options.plan))
 
 
-def _parameters(plan: System) -> dict[str, list[str]]:
+def _asked_parameters(plan: System) -> dict[str, list[str]]:
     """Return the parameters of the plan to ask for, by node."""
     return lists_by_key((it.node, it.name) for it in plan.parameters)
 
@@ -134,7 +138,7 @@ def plan_of(options: argparse.Namespace) -> System:
             raise InputError(f"{path}: no node ran when this snapshot was taken; {hint}")
         return seen_plan(diagnose(seen))
     if not is_fleet(data):
-        return _of_release(options, read_plan(data, path))
+        return _checked_release(options, read_plan(data, path))
     from multibot_rewrite.checks.closed_plan import closed_plan
     from multibot_rewrite.checks.judged_plan import plan_fleet
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
@@ -150,7 +154,7 @@ def plan_of(options: argparse.Namespace) -> System:
     return expected(made)
 
 
-def _of_release(options: argparse.Namespace, plan: System) -> System:
+def _checked_release(options: argparse.Namespace, plan: System) -> System:
     """Return the plan; raises UsageError if it is for another release than ``--distro``."""
     asked: str = options.distro or ""
     if asked and plan.release not in ("", asked):
@@ -166,11 +170,15 @@ def conclude(
     compared: Sequence[Finding],
     before: Sequence[Finding] = (),
 ) -> int:
-    """Report the findings, draw what is asked for; the exit code. ``compared`` are those about the
-    graph and its plan, ``before`` those from before there was a graph."""
+    """Report the findings, draw what is asked for; return the exit code.
+
+    ``compared`` are those about the graph and its plan, ``before`` those from before there was a
+    graph."""
     found = chosen(options, compared)
-    gaps = _gaps(options, plan)
+    gaps, whose = _shown_gaps(options, plan), index(plan, whose_by_plan(plan))
     of_graph = [it for it in (*before, *found) if it not in gaps]
+    known = {(subject_of(whose, it), it.level) for it in of_graph}
+    gaps = [it for it in gaps if (subject_of(whose, it), it.level) not in known]
     findings = [*of_graph, *gaps]
     held = coverage(plan, graph)
     given = vars(options)
@@ -188,9 +196,9 @@ def conclude(
     return STOPPED if failed else live.CODES[verdict]
 
 
-def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
-    """Return the open findings of the plan. Topics that an unnamed driver may publish are only counted,
-    unless notes are asked for."""
+def _shown_gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
+    """Return the open findings of the plan; many notes are only counted."""
+    # That is topics that an unnamed driver may publish, unless notes are asked for.
     found = chosen(options, plan.gaps)
     unsent = [it for it in found if it.code == nothing_known_sends.code and it.level == NOTE]
     if not unsent or options.fail_on == NOTE or options.verbose:
@@ -206,7 +214,8 @@ def _watch(
     domains: Sequence[int] = (),
     before: System | None = None,
 ) -> int:
-    gaps = _gaps(options, plan)
+    """Compare with the plan at each change; return the exit code."""
+    gaps = _shown_gaps(options, plan)
     print_lines(map(str, gaps))
 
     def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:
@@ -214,7 +223,7 @@ def _watch(
         found = check_domains(plan, views) if domains else check(plan, graph, before=before)
         return graph, coverage(plan, graph), found
 
-    last = follow(look, live.watched(options, _parameters(plan), domains))
+    last = follow(look, live.watched(options, _asked_parameters(plan), domains))
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE

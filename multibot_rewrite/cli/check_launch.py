@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def plan_beside(orders: Sequence[LaunchOrder]) -> System | None:
-    """Return the plan that a build wrote next to the one launch file; None without such a plan."""
+    """Return the plan that a build wrote next to the launch file; None without one."""
     path = os.path.join(os.path.dirname(orders[0].file), PLAN)
     if len(orders) > 1 or not (release_of_build(orders[0].file) and os.path.isfile(path)):
         return None
@@ -83,9 +83,9 @@ def plan_beside(orders: Sequence[LaunchOrder]) -> System | None:
 def _with_remedies(
     found: Sequence[Finding], orders: Sequence[LaunchOrder], read: _Read
 ) -> list[Finding]:
-    """Return the findings; those of a controller manager that spawners wait for and nothing starts say
-    the argument with which one is, tried out. ``read`` reads launch files with other arguments."""
-    remedy = _argument(orders, read) if any(map(_is_open, found)) else ""
+    """Return the findings; a missing controller manager's hint is the argument for one."""
+    # The argument is tried out: ``read`` reads launch files with other ones.
+    remedy = _manager_argument(orders, read) if any(map(_is_open, found)) else ""
     return [it._replace(hint=remedy) if remedy and _is_open(it) else it for it in found]
 
 
@@ -94,9 +94,9 @@ def _is_open(it: Finding) -> bool:
     return it.code == no_manager.code and it.level == ERROR and len(it.names) == 1
 
 
-def _argument(orders: Sequence[LaunchOrder], read: _Read) -> str:
+def _manager_argument(orders: Sequence[LaunchOrder], read: _Read) -> str:
     """Return the argument of a launch file with which no manager is missing; empty for none."""
-    for name, value in islice(_choices(orders), MOST):
+    for name, value in islice(_argument_choices(orders), MOST):
         given = ((it, [one for one in it.arguments if one[0] != name]) for it in orders)
         changed = [it._replace(arguments=(*others, (name, value))) for it, others in given]
         with suppress(MultibotError):
@@ -107,7 +107,7 @@ def _argument(orders: Sequence[LaunchOrder], read: _Read) -> str:
     return ""
 
 
-def _choices(orders: Sequence[LaunchOrder]) -> Iterator[tuple[str, str]]:
+def _argument_choices(orders: Sequence[LaunchOrder]) -> Iterator[tuple[str, str]]:
     """Yield the arguments that may switch to another manager, with both values."""
     declared: dict[str, None] = {}
     for it in orders:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the programs begin. Until a command runs, Ctrl-C ends the process without a word: nothing is
-written yet, and Python's traceback would tell of imports. ``guarded`` takes over.
+"""Where the programs begin; Ctrl-C ends the process silently until a command runs.
 
+Nothing is written yet, and Python's traceback would tell of imports. ``guarded`` takes over.
 What is imported here is built into Python. Before that run its own start and the script that pip
-writes, which imports re: there Ctrl-C ends with a traceback of Python's, as in every Python program.
-"""
+writes, which imports re: there Ctrl-C ends with a traceback of Python's, as in every Python
+program."""
 
 from __future__ import annotations
 

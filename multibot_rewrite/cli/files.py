@@ -68,8 +68,8 @@ def make_folders(folder: str, made: list[str]) -> None:
 
 @contextmanager
 def _signals_held() -> Iterator[None]:
-    """Let Ctrl-C and the like wait: an interrupt between two of its lines would leave copies. Python
-    handles signals in its main thread, whichever thread gets them."""
+    """Delay Ctrl-C and the like: between two lines of the block it would leave copies."""
+    # Python handles signals in its main thread, whichever thread gets them.
     came: list[int] = []
     is_main = threading.current_thread() is threading.main_thread()
     ends = [it for it in _ENDS if is_main and signal.getsignal(it) is not signal.SIG_IGN]
@@ -84,7 +84,7 @@ def _signals_held() -> Iterator[None]:
 
 
 def _commit(staged: dict[str, str]) -> None:
-    """Rename all, or give every target back what it was."""
+    """Rename all staged files to their targets, or restore every target on an error."""
     done: list[tuple[str, str]] = []
     try:
         for target, temporary in list(staged.items()):
@@ -139,8 +139,8 @@ def _target(path: str) -> tuple[str, int]:
 
 
 def write_new(path: str, data: bytes, mode: int) -> None:
-    """Write a file that is not there yet; ``mode`` 0 is the usual one. The disk starts on it, and
-    ``see_on_disk`` waits until it is there."""
+    """Write a file that is not there yet; ``mode`` 0 is the usual one."""
+    # The disk starts on it, and ``see_on_disk`` waits until it is there.
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     try:
         if mode:

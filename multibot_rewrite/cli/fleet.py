@@ -53,7 +53,7 @@ def check_use(options: argparse.Namespace, command: str, printed: bool) -> None:
 
 def build(options: argparse.Namespace) -> Fleet:
     """Make the fleet that the options describe."""
-    made = (_from_file if options.input.endswith(FLEET_FILES) else _from_words)(options)
+    made = (_fleet_of_file if options.input.endswith(FLEET_FILES) else _fleet_of_words)(options)
     note_interfaces(options, made.facts)
     check_unread(options, made)
     return made
@@ -67,12 +67,12 @@ def check_unread(options: argparse.Namespace, made: Fleet) -> None:
 
 
 def note_interfaces(options: argparse.Namespace, facts: Iterable[NodeFacts]) -> None:
-    """Say which nodes are as a NoDL file says."""
+    """Print which nodes are described by a NoDL file."""
     for name, file in dict.fromkeys((it.name, it.interface) for it in facts if it.interface):
         note(options, f"note: {name} as in {file} (NoDL)")
 
 
-def _from_file(options: argparse.Namespace) -> Fleet:
+def _fleet_of_file(options: argparse.Namespace) -> Fleet:
     from multibot_rewrite.checks.closed_plan import closed_plan
     from multibot_rewrite.checks.judged_plan import plan_fleet
     from multibot_rewrite.fleet.file.fleet_file import (  # one description needs none of it
@@ -90,13 +90,13 @@ def _from_file(options: argparse.Namespace) -> Fleet:
 
 
 def check_own(options: argparse.Namespace) -> None:
-    """Raise UsageError for an option that says what a fleet file says itself."""
+    """Raise UsageError for an option that the fleet file sets."""
     known = {name: written for name, written in OF_FLEET_FILE.items() if name in vars(options)}
     if given := given_options(options, known):
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
 
 
-def _from_words(options: argparse.Namespace) -> Fleet:
+def _fleet_of_words(options: argparse.Namespace) -> Fleet:
     names = robots(options)
     if not names:
         refuse_others(read_file(options.input), options.input, *DESCRIPTIONS)
@@ -143,6 +143,6 @@ def report_table(options: argparse.Namespace, made: Fleet) -> bool:
 
 
 def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:
-    """Return the launch files in the words, with their arguments; raises UsageError."""
+    """Return launch files with their arguments; raises UsageError for anything else."""
     orders = orders_in_words(words, shlex.join(words), options.roots)
     return [it._replace(trusted=options.trust) for it in orders]

@@ -106,6 +106,7 @@ def clear_leftovers(folder: str) -> None:
 
 
 def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note: str) -> None:
+    """Make a new folder next to the old one and exchange them; raises if it is impossible."""
     above, name = os.path.split(folder)
     if os.path.ismount(folder) or (
         os.path.commonpath([os.path.realpath(os.getcwd()), folder]) == folder
@@ -128,21 +129,21 @@ def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note
 
 
 def _link_all(folder: str, stage: str, but: Collection[str]) -> None:
-    """Make all of a folder again, files as links, except the given paths."""
-    _be_like(stage, folder)
+    """Make a copy of a folder with links to its files, except the given paths."""
+    _copy_attributes(stage, folder)
     for path, entry in _walk(folder):
         target = os.path.join(stage, path)
         try:
             if entry.is_dir(follow_symlinks=False):
                 os.mkdir(target)
-                _be_like(target, entry.path)
+                _copy_attributes(target, entry.path)
             elif path not in but and not _LEFT.fullmatch(entry.name):
                 os.link(entry.path, target, follow_symlinks=False)
         except OSError:
             raise _CannotSwapError from None
 
 
-def _be_like(folder: str, other: str) -> None:
+def _copy_attributes(folder: str, other: str) -> None:
     """Set mode, times and, where permitted, owner like those of another folder."""
     shutil.copystat(other, folder)
     there = os.stat(other)
@@ -193,7 +194,7 @@ def _exchange(stage: str, folder: str) -> None:
 
 
 def _bring_late(stage: str, folder: str, but: Collection[str]) -> None:
-    """Move files into the new folder that somebody put into the old one meanwhile."""
+    """Move files into the new folder that were put into the old one meanwhile."""
     if not os.path.isdir(stage):
         return
     for path, entry in list(_walk(stage)):
@@ -224,7 +225,7 @@ def _one_by_one(
 
 @contextmanager
 def _put_back(path: str) -> Iterator[None]:
-    """Restore the file after a failure: there was no build that it could describe."""
+    """Restore the file if the block fails: it would describe a build that was not made."""
     # Named as what a build clears away that comes after one that was killed.
     before = os.path.join(os.path.dirname(path), f".urdf-postfix.{os.getpid()}.00.tmp.old")
     with suppress(OSError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What was probably meant by an option that a command does not have."""
+"""What was probably meant by an unknown option."""
 
 from __future__ import annotations
 
@@ -21,19 +21,18 @@ def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: boo
     that begins with it, a key of the fleet file, an option of another command, and one that it is but
     for a typing mistake or two: of this command, or one that has a meaning itself.
     """
-    if meant := _meaning(wrong, command, known, has_fleet):
+    if meant := _hint_for(wrong, command, known, has_fleet):
         return f"; {meant}"
-    near = _mistyped(wrong, known)
+    near = _nearest_option(wrong, known)
     if near and near not in known:
-        return f"; {_meaning(near, command, known, has_fleet, near)}"
+        return f"; {_hint_for(near, command, known, has_fleet, near)}"
     return f"; did you mean '{near}'?" if near else ""
 
 
-def _meaning(
+def _hint_for(
     option: str, command: str, known: Collection[str], has_fleet: bool, name: str = "it"
 ) -> str:
-    """Return a hint for an unknown option: the option, key or command that does the same; "" for none.
-    ``name`` is what to call the option in it."""
+    """Return a hint for an unknown option, called ``name``: what does the same; "" for none."""
     word = f"-{option.removeprefix('-').replace('_', '-')}"
     if own := other_words("options").get(f"{command} {word}"):
         return f"use {own}"
@@ -49,13 +48,13 @@ def _meaning(
     if has_fleet and (keys := _fleet_keys(option) or _fleet_keys(meant)):
         return f"write the key {' or '.join(f'{it}:' for it in keys)} into the fleet file"
     if meant:
-        return f"{meant} does that, which {_takers(meant)}"
-    takers = _takers(option)
+        return f"{meant} does that, which {_commands_with(meant)}"
+    takers = _commands_with(option)
     return f"use {other}" if other else takers and f"{takers} {name}"
 
 
 def _fleet_keys(wrong: str) -> list[str]:
-    """Return the keys of a fleet file that the option may mean: one, those that begin so, or none."""
+    """Return the keys of a fleet file that an option may mean, equal or with that beginning."""
     from multibot_rewrite.fleet.file.fleet_data import schema
 
     word = wrong.lstrip("-").replace("-", "_")
@@ -64,10 +63,11 @@ def _fleet_keys(wrong: str) -> list[str]:
     return [key] if key in top else extensions(key, top)
 
 
-def _mistyped(wrong: str, known: Collection[str]) -> str:
-    """Return the option that was probably meant: an own one that is a part of the word (output-format:
-    format), or is it but for two typing mistakes, or another that begins with it or like it, but for
-    one in three letters; else an own one that is much like it, or ""."""
+def _nearest_option(wrong: str, known: Collection[str]) -> str:
+    """Return the option that was probably meant, or ""."""
+    # It is an own one that is a part of the word (output-format: format), or is it but for two
+    # typing mistakes, or another that begins with it or like it, but for one in three letters; else
+    # an own one that is much like it.
     word, found = wrong.lstrip("-"), []
     for option in dict.fromkeys((*known, *other_words("options"), *commands_of())):
         name, is_own = option.lstrip("-"), option in known
@@ -93,7 +93,7 @@ def commands_of() -> Mapping[str, Sequence[str]]:
     )
 
 
-def _takers(option: str) -> str:
+def _commands_with(option: str) -> str:
     """Return the commands that have an option, with a verb: ``multibot init takes``; "" if none has."""
     names = commands_of().get(option, ())
     verb = "takes" if len(names) == 1 else "take"

@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
     check_robot_names(names)
     _check_output(options)
     wanted = _wanted(options)
-    seen = _quietly(wanted, see)
+    seen = _with_progress(wanted, see)
     if wanted.names and seen.named and len(seen.robots) > 1:
         raise UsageError(
             "--robots is for one description; for several leave it out, then name, add or remove"
@@ -76,13 +76,13 @@ def run(options: argparse.Namespace) -> int:
     else:
         wanted = wanted._replace(each=wanted.each or 2)
         build = as_named if seen.named else first_that_builds
-        made = _quietly(wanted, lambda it: build(seen, it))
+        made = _with_progress(wanted, lambda it: build(seen, it))
     _check_arguments(made, wanted)
-    whole = _quietly(wanted, lambda it: with_faults_of_sources(made, it))
+    whole = _with_progress(wanted, lambda it: with_faults_of_sources(made, it))
     robots = dict.fromkeys(it.path for it in (*seen.robots, *seen.alike))
     others = tuple(it for it in robots if it in whole.others)
     whole = whole._replace(broken=seen.broken, others=others)
-    done = _deliver(options, whole, wanted.file)
+    done = _write_fleet(options, whole, wanted.file)
     for path, fault in [*seen.broken.items()][:MOST_BROKEN]:
         say(f"{path} was not used: {fault}", PROGRAM)
     if others:
@@ -93,9 +93,9 @@ def run(options: argparse.Namespace) -> int:
     return done
 
 
-def _quietly(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
-    """Return the result of a call, with its progress on the terminal and without warnings of xacro. The
-    build reports those of the files that are used."""
+def _with_progress(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
+    """Return the result of a call, with progress on the terminal and without xacro's warnings."""
+    # The build reports those of the files that are used.
     show = status()
     try:
         with redirect_stderr(StringIO()):
@@ -120,7 +120,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         options.trust,
         tuple(options.robots),
         simulator=options.simulator or "",
-        launch=_launch(options),
+        launch=_launch_orders(options),
         node_sets=tuple(options.node_set),
     )
     for it in wanted.node_sets:
@@ -128,7 +128,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
     return wanted._replace(file=options.output) if goes_to_file(options) else wanted
 
 
-def _launch(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | None:
+def _launch_orders(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | None:
     """Return the named launch files, none for ``--launch none``; None without the option."""
     words = options.launch
     if not words or words == [NONE]:
@@ -161,7 +161,7 @@ def _check_output(options: argparse.Namespace) -> None:
         )
 
 
-def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
+def _write_fleet(options: argparse.Namespace, made: Proposal, file: str) -> int:
     text = text_of(made, file)
     if options.verbose and goes_to_file(options):
         sys.stdout.write(text)
@@ -193,38 +193,38 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
 
 def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
     """Return the fleet that the user describes; what ``wanted`` has is not asked."""
-    robots = seen.robots if seen.named else _chosen([seen.robots[0], *seen.rivals])
+    robots = seen.robots if seen.named else _choose_description([seen.robots[0], *seen.rivals])
     wanted = _with_names(wanted) if len(robots) == 1 else _with_count(wanted)
     if not wanted.named:
         release = release_of(robots, seen.found, wanted)
-        word = _one_of("ROS release", RELEASES, release)
+        word = _ask_one_of("ROS release", RELEASES, release)
         wanted = wanted._replace(release=word, named=True)
     named = wanted.launch
     wanted = _with_launch(robots[0], wanted, seen.found) if len(robots) == 1 else wanted
     robots = [_with_arguments(it, wanted, seen.found) for it in robots]
     found, made = _with_files_asked_for(robots, seen.found, wanted, {})
-    refused = dict(made.refused) | dict.fromkeys(_left_out(made), LEFT_OUT)
-    wanted = wanted._replace(apart=_apart(made))
-    made = _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
+    refused = dict(made.refused) | dict.fromkeys(_unwanted_files(made), LEFT_OUT)
+    wanted = wanted._replace(apart=_ask_distance(made))
+    made = _with_progress(wanted, lambda it: that_builds(robots, found, it, refused))
     if not wanted.layout:
-        made = _in_layout(made)
+        made = _ask_layout(made)
     if wanted.simulator:
         return made
     simulator = made.keys["simulator"]
-    word = _one_of("Simulator", SIMULATORS, simulator)
+    word = _ask_one_of("Simulator", SIMULATORS, simulator)
     if word == simulator.value:
         return made
     layout = str(made.keys["layout"].value)
     wanted = wanted._replace(simulator=word, layout=layout, launch=named)
-    return _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
+    return _with_progress(wanted, lambda it: that_builds(robots, found, it, refused))
 
 
-def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
+def _choose_description(found: Sequence[Looked]) -> Sequence[Looked]:
     """Return the description that the user chooses, in a list."""
     if len(found) == 1:
         return found
     shown = [f"{it.path} ({plural(it.links, 'link')})" for it in found]
-    return [found[_of_these(shown, "Description", "1", or_none=False) or 0]]
+    return [found[_ask_which(shown, "Description", "1", or_none=False) or 0]]
 
 
 def _with_files_asked_for(
@@ -232,21 +232,21 @@ def _with_files_asked_for(
 ) -> tuple[Found, Proposal]:
     """Return the files with the user's choices, and the fleet that is made of them."""
     try:
-        return found, _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
+        return found, _with_progress(wanted, lambda it: that_builds(robots, found, it, refused))
     except Undecided as question:
         say(f"{question}".partition(": ")[0], PROGRAM)
         files = [*question.files]
-        at = _of_these([*map(question.said, files)], "The one that is meant", NONE)
+        at = _ask_which([*map(question.said, files)], "The one that is meant", NONE)
     meant = () if at is None else (files[at],)
     left = {it: LEFT_OUT for it in files if it not in meant}
     found = found._replace(meant=(*found.meant, *meant))
     return _with_files_asked_for(robots, found, wanted, {**refused, **left})
 
 
-def _of_these(
+def _ask_which(
     shown: Sequence[str], question: str, default: str, or_none: bool = True
 ) -> int | None:
-    """Return which of these was chosen by its number; None for the word ``none``."""
+    """Return the index of the chosen item; None for the answer ``none``."""
     for at, it in enumerate(shown, 1):
         say(f"  {at}: {it}", PROGRAM)
     numbers = [str(at) for at in range(1, len(shown) + 1)]
@@ -257,15 +257,15 @@ def _of_these(
 def _with_count(wanted: Wanted) -> Wanted:
     if wanted.each:
         return wanted
-    return wanted._replace(each=int(_valid("Robots of each description", "2", _is_count)))
+    return wanted._replace(each=int(_ask_until_valid("Robots of each description", "2", _is_count)))
 
 
 def _with_names(wanted: Wanted) -> Wanted:
-    """Return ``wanted`` with names of robots; a number stands for robot1, robot2 and so on."""
+    """Return ``wanted`` with names of robots; for a number N they are robot1 to robotN."""
     if wanted.names:
         return wanted
     given = "2" if not wanted.each else ", ".join(names_of([""], wanted.each)[0])
-    text = _valid("Robots: how many, or their names", given, _is_robots)
+    text = _ask_until_valid("Robots: how many, or their names", given, _is_robots)
     if text.strip().isdigit():
         return wanted._replace(each=int(text))
     names = tuple(_split_list(text))
@@ -274,18 +274,18 @@ def _with_names(wanted: Wanted) -> Wanted:
 
 def _with_launch(robot: Looked, wanted: Wanted, found: Found) -> Wanted:
     """Return ``wanted`` with the launch file that starts the robot; the user may choose none."""
-    (it,) = _quietly(wanted, lambda asked: with_arguments([robot], asked, found))
+    (it,) = _with_progress(wanted, lambda asked: with_arguments([robot], asked, found))
     if wanted.launch is not None or it.bringup is None or not it.bringup.others:
         return wanted
     orders = [it.bringup.order, *it.bringup.others]
     shown = [order_text(one, os.curdir) for one in orders]
-    at = _of_these(shown, "Launch file that starts the robot", "1")
+    at = _ask_which(shown, "Launch file that starts the robot", "1")
     return wanted._replace(launch=() if at is None else (orders[at],))
 
 
 def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:
     """Return the robot with values for the xacro arguments that name it or have no default."""
-    (it,) = _quietly(wanted, lambda asked: with_arguments([robot], asked, found))
+    (it,) = _with_progress(wanted, lambda asked: with_arguments([robot], asked, found))
     asked = [(name, value) for name, value in it.arguments if name not in wanted.arguments]
     if asked:
         say("  {robot} stands for the name of each robot", PROGRAM)
@@ -293,7 +293,7 @@ def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:
     return it._replace(arguments=tuple({**dict(it.arguments), **values}.items()), needed=())
 
 
-def _left_out(made: Proposal) -> list[str]:
+def _unwanted_files(made: Proposal) -> list[str]:
     """Return the related files that the user does not want."""
     paths = list(dict.fromkeys(path for it in made.members for path in it.related_files.paths))
     if not paths:
@@ -305,27 +305,27 @@ def _left_out(made: Proposal) -> list[str]:
     def fits(text: str) -> bool:
         return text in ("none", "all") or all(it in numbers for it in _split_list(text))
 
-    text = _valid("Files to leave out: numbers, all, or none", "none", fits)
+    text = _ask_until_valid("Files to leave out: numbers, all, or none", "none", fits)
     if text == "all":
         return paths
     return [numbers[it] for it in _split_list(text)] if text != "none" else []
 
 
-def _apart(made: Proposal) -> float:
+def _ask_distance(made: Proposal) -> float:
     """Return metres from robot to robot; 0 if their poses differ already, or there is one robot."""
     places = [it["y"] for it in made.poses.values()]
     steps = {round(after - before, 3) for before, after in pairwise(places)}
     if len(steps) != 1:
         return 0.0
     (default,) = steps
-    return float(_valid("Metres from robot to robot", f"{default:g}", _is_length))
+    return float(_ask_until_valid("Metres from robot to robot", f"{default:g}", _is_length))
 
 
-def _in_layout(made: Proposal) -> Proposal:
+def _ask_layout(made: Proposal) -> Proposal:
     layout = made.keys["layout"]
     for it in LAYOUTS:
         say(f"  {it.name}: {it.about}", PROGRAM)
-    word = _one_of("Layout", [it.name for it in LAYOUTS], layout)
+    word = _ask_one_of("Layout", [it.name for it in LAYOUTS], layout)
     return made if word == layout.value else in_layout(made, Choice(word, MEANT))
 
 
@@ -347,11 +347,11 @@ def _is_length(text: str) -> bool:
     return re.fullmatch(r"\d{1,4}(\.\d+)?", text) is not None and float(text) > 0
 
 
-def _one_of(what: str, words: Sequence[str], default: Choice) -> str:
+def _ask_one_of(what: str, words: Sequence[str], default: Choice) -> str:
     return _ask(f"{what} ({default.why})", str(default.value), words)
 
 
-def _valid(question: str, default: str, fits: Callable[[str], bool]) -> str:
+def _ask_until_valid(question: str, default: str, fits: Callable[[str], bool]) -> str:
     """Return the answer to a question, which is repeated until the answer fits."""
     while not fits(text := _ask(question, default).strip()):
         say(f"  {text!r} does not fit", PROGRAM)
@@ -359,6 +359,7 @@ def _valid(question: str, default: str, fits: Callable[[str], bool]) -> str:
 
 
 def _ask(question: str, default: str, words: Sequence[str] | None = None) -> str:
+    """Ask on the terminal and return the answer."""
     from rich.console import Console  # only a question needs it
     from rich.prompt import Prompt
 

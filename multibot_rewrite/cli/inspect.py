@@ -94,7 +94,7 @@ def show(options: argparse.Namespace, name: str | None) -> int:
             known = [as_json(it) for it in sections]
             deliver(options, json_bytes({"sections": known, "rules": rules_json()}))
         else:
-            deliver_report(options, (*_list(sections), "", rule_grid()))
+            deliver_report(options, (*_section_table(sections), "", rule_grid()))
         return DONE
     found = look_up(definitions, name, TYPES)
     if not found and is_name(name):
@@ -104,9 +104,9 @@ def show(options: argparse.Namespace, name: str | None) -> int:
         return node_source.run_known(options, node)
     bases = {base: it.classes[name] for base, it in plugin_bases().items() if name in it.classes}
     if not (found or bases):
-        raise _unknown(definitions, name, TYPES)
+        raise _unknown_name(definitions, name, TYPES)
     if not found:
-        deliver_report(options, _class(name, bases))
+        deliver_report(options, _class_lines(name, bases))
     elif options.output_kind == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
@@ -114,8 +114,8 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     return DONE
 
 
-def _class(name: str, bases: Mapping[str, str]) -> Iterator[str | Grid]:
-    """Yield what a class is that a package registers for pluginlib, and the parameters that it has."""
+def _class_lines(name: str, bases: Mapping[str, str]) -> Iterator[str | Grid]:
+    """Yield what is known of a class registered for pluginlib, and its parameters."""
     for base, releases in bases.items():
         yield f"{name}  a plugin of {base}, in {releases or 'all releases'}"
     rows = [(it.path, it.type, it.releases, it.source) for it in declared_by(name)]
@@ -123,7 +123,7 @@ def _class(name: str, bases: Mapping[str, str]) -> Iterator[str | Grid]:
         yield Grid(("parameter", "type", "releases", "source"), rows)
 
 
-def _unknown(definitions: Definitions, name: str, types: Sequence[str]) -> UsageError:
+def _unknown_name(definitions: Definitions, name: str, types: Sequence[str]) -> UsageError:
     others = [it for type_ in types for it in definitions.releases_elsewhere(type_, name)]
     if others:
         where = f"is not in {definitions.release}, only in {', '.join(dict.fromkeys(others))}"
@@ -136,7 +136,7 @@ def _unknown(definitions: Definitions, name: str, types: Sequence[str]) -> Usage
     return UsageError(f"{name!r} is not known: no {what} has this name; {hint}")
 
 
-def _list(sections: Sequence[PluginDefinition]) -> Iterator[str | Grid]:
+def _section_table(sections: Sequence[PluginDefinition]) -> Iterator[str | Grid]:
     """Yield a table with one line a section."""
     rows = [
         (it.type, it.names[0], it.ros, shorten(it.names[1:], 1), str(len(it.sites)), it.source)
@@ -151,12 +151,12 @@ def details(sections: Sequence[PluginDefinition]) -> Iterator[str | Grid]:
         yield from [""] * (number > 0)
         yield f"{section.name}  {section.file}:{section.line}"
         yield from (f"  {what}: {text}" for what, text in facts(section).items())
-        rows = [_row(site, section) for site in section.sites]
+        rows = [_site_row(site, section) for site in section.sites]
         if rows:
             yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
 
 
-def _row(site: SiteRow, section: PluginDefinition) -> tuple[str, ...]:
+def _site_row(site: SiteRow, section: PluginDefinition) -> tuple[str, ...]:
     not_inserted = " (not inserted)" if site.default and not section.inserts else ""
     block = block_of(site)
     shared = f" [block {block}]" if block else ""
@@ -238,8 +238,8 @@ _CODE = re.compile(r"M[A-Z](\d\w*)?", re.IGNORECASE)
 
 
 def are_codes(words: Sequence[str]) -> bool:
-    """Return whether a code is among these words, or they are the name of a rule."""
-    return any(map(_CODE.fullmatch, _split(words)))
+    """Return whether there is a code among the arguments, or they are the name of a rule."""
+    return any(map(_CODE.fullmatch, _split_codes(words)))
 
 
 def is_name(word: str) -> bool:
@@ -250,7 +250,7 @@ def is_name(word: str) -> bool:
 def explain(options: argparse.Namespace, words: Sequence[str]) -> int:
     """Explain rules by codes, beginnings of codes or names; list many. Return the exit code."""
     known, found = rules(), dict[str, Rule]()
-    for word in _split(words):
+    for word in _split_codes(words):
         asked = find_rules(word, known) if word else []
         if not asked:
             raise UsageError(no_rule(word, known))
@@ -280,7 +280,7 @@ def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
     ]
 
 
-def _split(words: Iterable[str]) -> list[str]:
+def _split_codes(words: Iterable[str]) -> list[str]:
     return [code for word in words for code in word.split(",")]
 
 
@@ -288,7 +288,7 @@ ARGUMENT_COLUMNS = ("argument", "default", "goes into", "as", "count", "example"
 
 
 def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
-    """Try the arguments of a xacro file and arguments_report; returns the exit code."""
+    """Try the arguments of a xacro file and report them; return the exit code."""
     path = _only_xacro(options, words)
     if options.output:
         check_target(options.output, [path, *options.definitions])
@@ -307,7 +307,7 @@ def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
 
 
 def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
-    """Return the only word, which is a xacro file; raises UsageError."""
+    """Return the only argument, a xacro file; raises UsageError."""
     missing = next((it for it in words if not os.path.lexists(it)), None)
     if missing is not None:
         raise UsageError(f"{missing}: there is no such file or folder")

@@ -29,6 +29,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _join(options: argparse.Namespace) -> int:
+    """Join the parts and write the robot; return the exit code."""
     first, *others = options.words
     if first.endswith(JOIN):
         more = [*others, *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
@@ -71,7 +72,7 @@ def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -
 def _write(
     options: argparse.Namespace, items: Sequence[tuple[str, bytes]], read: Sequence[str]
 ) -> None:
-    """Write all or none, and nothing over a file that is read."""
+    """Write all files or none, and none over a file that is read."""
     for path, _ in items:
         check_target(path, read)
         check_link(path)
@@ -79,6 +80,7 @@ def _write(
 
 
 def _split(options: argparse.Namespace) -> int:
+    """Write the parts of a joined description; return the exit code."""
     if len(options.words) != 1:
         raise UsageError("--undo takes one file, which multibot join made")
     if given := next((it for it in _OF_PARTS if getattr(options, it)), None):
@@ -93,7 +95,7 @@ def _split(options: argparse.Namespace) -> int:
 
 
 def _parts(options: argparse.Namespace) -> list[Part]:
-    """Return the parts in the words: each file with the xacro arguments after it."""
+    """Return the parts on the command line, each file with the xacro arguments after it."""
     files: list[tuple[str, dict[str, str]]] = []
     for word in options.words:
         name, is_argument, text = word.partition(":=")
@@ -104,17 +106,19 @@ def _parts(options: argparse.Namespace) -> list[Part]:
         else:
             files[-1][1][name] = text
     many = len(files)
-    ends = _for_each("--at", options.at, many)
-    poses = _for_each("--pose", options.pose, many)
-    prefixes = _for_each("--prefix", options.prefix, many, of_all=True)
+    ends = _values_for_parts("--at", options.at, many)
+    poses = _values_for_parts("--pose", options.pose, many)
+    prefixes = _values_for_parts("--prefix", options.prefix, many, of_all=True)
     every = zip(files, ends, poses, prefixes, strict=True)
     return [
-        Part(file, at, _numbers(pose), prefix, "", given)
+        Part(file, at, _pose_numbers(pose), prefix, "", given)
         for (file, given), at, pose, prefix in every
     ]
 
 
-def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:
+def _values_for_parts(
+    option: str, values: Sequence[str], many: int, of_all: bool = False
+) -> list[str]:
     """Return the option's value for each part: those given from the second part on, or one for all."""
     if of_all and len(values) == many:
         return list(values)
@@ -125,7 +129,7 @@ def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = Fals
     raise UsageError(f'{what}; write it once for each, in their order, {option} "" for none')
 
 
-def _numbers(pose: str) -> Sequence[float]:
+def _pose_numbers(pose: str) -> Sequence[float]:
     if not pose:
         return ZERO
     try:

@@ -22,8 +22,7 @@ _EACH = "each robot"
 
 
 class _Row(NamedTuple):
-    """A process: the robot or robots that it is for, what it is, where a launch file has it, the
-    parameter files that it reads, and why it runs once for all robots, or later."""
+    """A process: for whom, what, its place, its parameter files, and why it runs once or later."""
 
     whose: str
     process: str
@@ -40,7 +39,7 @@ def run(options: argparse.Namespace, path: str) -> int:
     for launch in dict.fromkeys(it.launch for it in file.robots if it.launch):
         robots = [it for it in file.robots if it.launch == launch]
         whose = _EACH if len(robots) == len(file.robots) else ", ".join(it.name for it in robots)
-        rows += dict.fromkeys(_of_robot(robots[0], whose, file, options.trust))
+        rows += dict.fromkeys(_rows_of_robot(robots[0], whose, file, options.trust))
     if not rows:
         raise UsageError(f"{path}: no robot has a launch file; multibot plan {path} has its nodes")
     if options.output_kind == JSON:
@@ -51,7 +50,7 @@ def run(options: argparse.Namespace, path: str) -> int:
     return DONE
 
 
-def _of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Iterator[_Row]:
+def _rows_of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Iterator[_Row]:
     orders = [it._replace(trusted=trust) for it in robot.launch]
     for it in launch_of(orders, robot.name).nodes:
         names = {it.name or it.executable, os.path.basename(it.executable)}

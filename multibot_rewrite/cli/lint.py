@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
         note(options, f"warning: {doubt}")
     alone = config
     config = with_options(config, **given(options))
-    paths, unreadable = _files(options, config)
+    paths, unreadable = _files_to_lint(options, config)
     told = release_chosen_here(asked)
     said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
     settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
@@ -88,12 +88,14 @@ def run(options: argparse.Namespace) -> int:
 
         text = baseline_text(findings, options.write_baseline)
         write_files(options, [(options.write_baseline, text)])
-        note(options, f"{options.write_baseline}: {_count(findings)} are known from now on")
+        note(options, f"{options.write_baseline}: {_counted(findings)} are known from now on")
         return DONE
     return _conclude(options, config, paths, findings, said.why or why_here(asked))
 
 
-def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:
+def _files_to_lint(
+    options: argparse.Namespace, config: Configured
+) -> tuple[list[str], list[Finding]]:
     """Return the files to lint, and findings for folders that cannot be read."""
     paths = plain_words(options)
     if paths == [STDIN]:
@@ -125,7 +127,7 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
 
 
 def _check_selecting(options: argparse.Namespace, paths: Sequence[str]) -> None:
-    """Raise UsageError for an option that none of the files is for."""
+    """Raise UsageError for an option that does not apply to any of the files."""
     if STDIN in paths or not paths:
         return
     check_xacro(options, paths)
@@ -152,6 +154,7 @@ def _check_shared(
 
 
 def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str]) -> list[Finding]:
+    """Return the findings in the files, or in standard input."""
     if list(paths) == [STDIN]:
         from multibot_rewrite.lint.check import lint_data
 
@@ -159,13 +162,15 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
     watch = partial(watched, total=len(paths), doing="linting")
     with cached(options, settings) as cache:
         findings = lint_files(paths, settings, watch=watch, cache=cache)
-    if not options.fix or not _fixed(options, among(paths, settings), findings):
+    if not options.fix or not _apply_fixes(options, among(paths, settings), findings):
         return findings
     # Anew, and all: what is written in one file is found through others.
     return lint_files(paths, settings)
 
 
-def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
+def _apply_fixes(
+    options: argparse.Namespace, settings: Settings, findings: list[Finding]
+) -> list[str]:
     """Apply fixes and return the fixed files. With --diff print the changes and fix none."""
     from multibot_rewrite.cli.output import diff
     from multibot_rewrite.description.sources.read import read_file
@@ -190,6 +195,7 @@ def _conclude(
     findings: Sequence[Finding],
     why: str,
 ) -> int:
+    """Report the findings beyond the baseline; return the exit code."""
     stale = 0
     if config.baseline:
         from multibot_rewrite.lint.config.baseline import beyond, read_baseline
@@ -221,10 +227,10 @@ def _summary(
     fixable = sum(bool(it.edits) for it in findings)
     hint = f"; --fix fixes {fixable}" if fixable and not options.fix else ""
     old = f"; {stale} in the baseline are gone" if stale else ""
-    return f"{files}{changed}: {_count(findings)}{hint}{old}"
+    return f"{files}{changed}: {_counted(findings)}{hint}{old}"
 
 
-def _count(findings: Sequence[Finding]) -> str:
+def _counted(findings: Sequence[Finding]) -> str:
     return in_words(counts(findings)) or "no findings"
 
 

@@ -142,8 +142,8 @@ def graphs(options: argparse.Namespace, domains: Collection[int]) -> dict[int, S
 def with_states(
     options: argparse.Namespace, seen: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> System:
-    """Return the live graph with the answers to ``--state``, and print their number; without the option
-    the graph unchanged. ``parameters`` are asked for in addition."""
+    """Return the live graph with the answers to ``--state``, also about ``parameters``."""
+    # Without the option it is unchanged; otherwise the number of answers is printed.
     if not options.state:
         return seen
     from multibot_rewrite.producers.ros.child import ask
@@ -167,8 +167,8 @@ def watched(
     parameters: Mapping[str, Collection[str]] = NO_MORE,
     domains: Collection[int] = (),
 ) -> Generator[Mapping[int, System], None, None]:
-    """Yield the live graph by domain after each change, once all domains were seen. With ``--state`` it
-    has the nodes' answers, also about ``parameters``."""
+    """Yield the live graph by domain after each change, once all domains were seen."""
+    # With ``--state`` it has the nodes' answers, also about ``parameters``.
     gc.enable()  # no short process any more
     asks = dict(parameters) if options.state else None
     asked = Request(options.timeout or inf, watch=True, asks=asks)

@@ -23,7 +23,7 @@ HELP, VERSION = ("-h", "--help"), ("-V", "--version")
 
 
 def run(words: Sequence[str]) -> int:
-    """Run the command of the first word; returns the exit code, raises UsageError."""
+    """Run the command that is named first; returns the exit code, raises UsageError."""
     if not words:
         raise UsageError(f"no COMMAND given, use one of {', '.join(COMMANDS)}")
     first, *others = words
@@ -44,7 +44,7 @@ def find_command(word: str) -> Command:
     if word in COMMANDS:
         return COMMANDS[word]
     if word.startswith("-"):
-        raise UsageError(f"{word}: write the command first, for example: {_with_option(word)}")
+        raise UsageError(f"{word}: write the command first, for example: {_command_with(word)}")
     from multibot_rewrite.base.nearest import other_words  # a mistake alone needs it
 
     if meant := other_words("commands").get(word):
@@ -53,7 +53,7 @@ def find_command(word: str) -> Command:
     raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
 
 
-def _with_option(word: str) -> str:
+def _command_with(word: str) -> str:
     """Return a command line with the option, for the first command that has it."""
     from multibot_rewrite.cli.hints import commands_of  # a mistake alone needs it
 
@@ -97,7 +97,7 @@ class MultibotCommand:
     NAME = "multibot"
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
-        """Take every word as it is: the command that is called knows its own options."""
+        """Accept all arguments: the command that is called checks them."""
         parser.add_argument("--version", action="version", version=f"multibot {__version__}")
         parser.add_argument("command", metavar="COMMAND", choices=tuple(COMMANDS), help="see below")
         parser.add_argument("words", metavar="...", nargs=argparse.REMAINDER, help="its arguments")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot inspect PACKAGE_FOLDER/PROGRAM``: what the source of a node says, with file and line.
-``multibot inspect NODE``: what is known of a node of a public package, and of what version of it."""
+"""``multibot inspect`` of a program's source (PACKAGE_FOLDER/PROGRAM) or a known NODE."""
 
 from __future__ import annotations
 
@@ -15,7 +14,7 @@ from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.description.sources.packages import MANIFEST, package_of
-from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.conditions import readable
 from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.packages import older, versions_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters, Param
@@ -31,7 +30,7 @@ def is_program(word: str) -> bool:
 
 
 def run(options: argparse.Namespace, word: str) -> int:
-    """Read the source of a program; returns the exit code. Raises UsageError where there is none."""
+    """Read the source of a program; returns the exit code, raises UsageError without a program."""
     folder, program = os.path.split(os.path.abspath(word))
     name, _ = package_of(os.path.join(folder, MANIFEST)) or ("", "")
     packages = packages_for(os.path.join(folder, MANIFEST), ())
@@ -74,7 +73,14 @@ def _printed_details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
     facts = found.facts
     yield f"node {facts.name} of {facts.package}, by {plural(len(found.files), 'file')} of its source"
     own = [
-        (it.role, it.name, _types(it), it.parameter, said(it.when), _source(it, folder))
+        (
+            it.role,
+            it.name,
+            _types_text(it),
+            it.parameter,
+            readable(it.when),
+            _source_text(it, folder),
+        )
         for it in facts.endpoints
     ]
     if own:
@@ -82,27 +88,29 @@ def _printed_details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
         yield Grid(("role", "name", "type", "parameter", "only if", "source"), own)
     if found.params:
         yield ""
-        rows = [(it.path, it.default, it.kind, _source(it, folder)) for it in found.params]
+        rows = [(it.path, it.default, it.kind, _source_text(it, folder)) for it in found.params]
         yield Grid(("parameter", "default", "holds", "source"), rows)
     if found.frames:
         yield ""
-        named = [(frame, what, _near(f"{at}", folder)) for what, frame, at in found.frames]
+        named = [
+            (frame, what, _relative_place(f"{at}", folder)) for what, frame, at in found.frames
+        ]
         yield Grid(("frame in the code", "as", "source"), named)
     for it in facts.untold:
-        yield f"not known: {_near(it.text, folder)}"
+        yield f"not known: {_relative_place(it.text, folder)}"
 
 
-def _types(end: Endpoint) -> str:
+def _types_text(end: Endpoint) -> str:
     """Return the type of an end, and its other types with their conditions."""
-    return "; ".join((end.type, *(f"{type_} if {said(it)}" for it, type_ in end.types)))
+    return "; ".join((end.type, *(f"{type_} if {readable(it)}" for it, type_ in end.types)))
 
 
-def _source(it: Endpoint | Param, folder: str = "") -> str:
+def _source_text(it: Endpoint | Param, folder: str = "") -> str:
     """Return where a fact can be read, otherwise the releases that have it."""
-    return _near(it.source[0], folder) if it.source else it.releases
+    return _relative_place(it.source[0], folder) if it.source else it.releases
 
 
-def _near(text: str, folder: str) -> str:
+def _relative_place(text: str, folder: str) -> str:
     """Return a place relative to the package."""
     return text.replace(os.path.join(os.path.realpath(folder), ""), "") if folder else text
 
@@ -119,12 +127,12 @@ def _as_json(found: NodeSource) -> dict[str, object]:
                     key: getattr(it, key)
                     for key in ("role", "kind", "name", "type", "parameter", "when")
                 },
-                "source": _source(it),
+                "source": _source_text(it),
             }
             for it in facts.endpoints
         ],
         "parameters": [
-            {"name": it.path, "default": it.default, "holds": it.kind, "source": _source(it)}
+            {"name": it.path, "default": it.default, "holds": it.kind, "source": _source_text(it)}
             for it in found.params
         ],
         "frames": [

@@ -62,9 +62,8 @@ def deliver(options: argparse.Namespace, data: bytes, schema: str = "") -> None:
 
 
 def with_schema(path: str, data: bytes, schema: str) -> list[tuple[str, bytes]]:
-    """Return the files to write for a YAML file: its own with a comment for editors, and the schema
-    that the comment names. A device has none, nor a file next to another one of the schema's
-    name."""
+    """Return the files to write for a YAML file: its own, and the schema for editors."""
+    # A device has none, nor a file next to another one of the schema's name.
     beside = os.path.join(os.path.dirname(path), editors.schema_name(schema))
     is_file = os.path.isfile(path) or not os.path.exists(path)
     if not (schema and is_file and editors.may_be_written(schema, beside)):
@@ -81,8 +80,8 @@ def _read_files(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
 
 
 def check_there(options: argparse.Namespace) -> None:
-    """Raise UsageError for a missing input file, with one of a similar name, or with what makes
-    such a file. A word without an ending may be a package or a folder."""
+    """Raise UsageError for a missing input file, with a similar name or what makes it."""
+    # A word without an ending may be a package or a folder.
     written = {"suggest", "fleet"} if vars(options).get("undo") else {"suggest"}
     for option, path in _read_files(options):
         folder, name = os.path.split(path)
@@ -126,11 +125,11 @@ def serves_a_program(options: argparse.Namespace) -> bool:
     """
     if options.output or options.in_place or options.verbose:
         return False
-    pipes = {_pipe(it) for it in (sys.stdout, sys.stderr)}
+    pipes = {_pipe_number(it) for it in (sys.stdout, sys.stderr)}
     return None not in pipes and len(pipes) == 2
 
 
-def _pipe(stream: TextIO | None) -> int | None:
+def _pipe_number(stream: TextIO | None) -> int | None:
     """Return the number of the pipe that a stream writes to; None if it is none."""
     try:
         found = os.fstat(stream.fileno()) if stream else None
@@ -155,8 +154,8 @@ def is_screen(stream: TextIO | None) -> TypeGuard[TextIO]:
 
 
 def status() -> Callable[[str], None]:
-    """Return a function that shows a line about the work in place of the one before. An empty line
-    removes it. Nothing is shown if standard error is no terminal."""
+    """Return a function that replaces the last line about the work; an empty line removes it."""
+    # Nothing is shown if standard error is no terminal.
     screen = sys.stderr
     if not is_screen(screen):
         return lambda _: None
@@ -232,13 +231,13 @@ def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False)
 
     # Unlike splitlines, this ends lines at line feeds only, as patch does.
     before, after = io.BytesIO(old).readlines(), io.BytesIO(new).readlines()
-    lines = diff_bytes(unified_diff, before, after, _named(name), _named(new_name))
+    lines = diff_bytes(unified_diff, before, after, _escaped_path(name), _escaped_path(new_name))
     cut_short = b"\n\\ No newline at end of file\n"
     whole = (line if line.endswith(b"\n") else line + cut_short for line in lines)
     return b"".join(map(_painted_line, whole) if colour else whole)
 
 
-def _named(path: str) -> bytes:
+def _escaped_path(path: str) -> bytes:
     """Return the bytes of a path, with control characters escaped."""
     return os.fsencode("".join(it if it >= " " else one_line(it) for it in path))
 

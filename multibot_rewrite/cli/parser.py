@@ -105,7 +105,7 @@ def make_parser(command: Command, prog: str = "") -> Parser:
 def declare(parser: Parser, command: Command) -> None:
     """Give a parser the options and the help text of a command."""
     parser.short = short_help(command, parser.prog)
-    head = [command.about, "examples:\n" + "\n".join(map(_example, command.examples))]
+    head = [command.about, "examples:\n" + "\n".join(map(_example_text, command.examples))]
     more = command.more.split("\n\n") if command.more else ()
     head += (it if it.startswith("  ") else wrapped(it) for it in more)
     parser.description = "\n\n".join(head)
@@ -130,7 +130,7 @@ def declare(parser: Parser, command: Command) -> None:
 def short_help(command: Command, prog: str) -> str:
     """Return usage, purpose, examples as far as they fit on a screen, and names of the options."""
     head = [f"usage: {command.usage.replace('%(prog)s', prog)}", "", command.about, ""]
-    names = [it for group in command.groups for it in _names(group)]
+    names = [it for group in command.groups for it in _option_names(group)]
     end = ["", *names, "", f"{prog} --help explains them."]
     fitting = (it for it in map(_fitted, command.examples) if it)
     examples = [*fitting][: ROWS - len(head) - len(end) - 1]
@@ -146,7 +146,7 @@ def _fitted(example: Example) -> str:
     return next((it for it in lines if it and len(it) <= COLUMNS), "")
 
 
-def _names(group: OptionGroup) -> list[str]:
+def _option_names(group: OptionGroup) -> list[str]:
     """Return the options of a group by name, wrapped."""
     title = group.title.partition(",")[0]
     words = [
@@ -157,7 +157,7 @@ def _names(group: OptionGroup) -> list[str]:
     return [lines[0], *(f"  {it}" for it in lines[1:])]
 
 
-def _example(example: Example) -> str:
+def _example_text(example: Example) -> str:
     about = f"    # {example.about}" if example.about else ""
     one = f"  {example.command}{about}"
     return one if len(one) <= 80 or not about else f"  # {example.about}\n  {example.command}"
@@ -174,7 +174,7 @@ def wrapped(text: str, width: int = 80) -> str:
 
 
 def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
-    """Return the options in the words; a mistake ends the process with one line."""
+    """Return the parsed options; a mistake ends the process with one line."""
     parser.colour = _colour_asked(words)
     if wrong := _first_unknown_option(words, parser.known()):
         from multibot_rewrite.cli.hints import option_hint  # a mistake alone needs it
@@ -212,7 +212,7 @@ def _tell_sources(options: argparse.Namespace) -> None:
 
 
 def _kind_of(word: str, program: str) -> str:
-    """Return the kind of a file that a command does not take, with the command for it."""
+    """Return what a refused file is, and the command that takes it."""
     from multibot_rewrite.base.bounded import read_bytes
     from multibot_rewrite.base.file_kinds import refuse_others
 
@@ -235,7 +235,7 @@ def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:
 
 
 def _colour_asked(words: Sequence[str]) -> str:
-    """Return the value of ``--color``, which ``--help`` may come before."""
+    """Return the value of ``--color``, which may be behind ``--help``."""
     asked = [it for name, it in pairwise(words) if name == "--color"]
     asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
     return asked[-1] if asked else AUTO

@@ -77,8 +77,7 @@ def conclude(
 
 
 def snippets(places: Iterable[str]) -> dict[str, list[str]]:
-    """Return by ``file:line`` that line of the file with those around it, each with its number. A
-    file that does not exist any more, or is no text, has none."""
+    """Return by ``file:line`` the numbered lines around it; none for missing files and no texts."""
     found = {}
     for place in dict.fromkeys(places):
         file, _, number = place.rpartition(":")

@@ -28,8 +28,7 @@ PROGRAM = "multibot"
 
 
 def leave(code: int) -> NoReturn:
-    """End this process at once: taking Python down takes as long as many a job, and frees nothing that
-    the system does not free."""
+    """End this process at once: taking Python down takes as long as many a job."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     try:
@@ -43,7 +42,7 @@ def leave(code: int) -> NoReturn:
 
 
 def start(command: Command, words: Sequence[str], prog: str = "") -> int:
-    """Read the words of a command and run it; returns the exit code."""
+    """Parse the arguments of a command and run it; returns the exit code."""
     begun = time.monotonic()
     options = parsed(make_parser(command, prog), words)
     try:
@@ -58,12 +57,12 @@ def start(command: Command, words: Sequence[str], prog: str = "") -> int:
         check_there(options)
         code: int = run(options)
     except RewriteRefused as error:
-        code = _refused(options, error)
+        code = _report_refusal(options, error)
     detail(options, f"{time.monotonic() - begun:.1f} s")
     return code
 
 
-def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
+def _report_refusal(options: argparse.Namespace, error: RewriteRefused) -> int:
     """Report why a rewrite is not possible, which no ``--ignore`` changes."""
     from multibot_rewrite.cli.report import (
         NO_ROBOTS,
@@ -84,7 +83,7 @@ def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
 
 
 def run_alone(command: Command, arguments: Sequence[str] | None) -> int:
-    """Run a command that is a program; ``arguments`` are those of the process if they are None."""
+    """Run a command that is a program; without ``arguments`` with those of the process."""
     words = sys.argv[1:] if arguments is None else arguments
     return guarded(command.name, partial(start, command, words), own_process=arguments is None)
 
@@ -104,7 +103,7 @@ def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     return code
 
 
-def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
+def _raise_interrupt(unraisable: sys.UnraisableHookArgs) -> None:
     """Raise Ctrl-C again that a callback, as imports have, would print and forget."""
     if unraisable.exc_type is not KeyboardInterrupt:
         sys.__unraisablehook__(unraisable)
@@ -118,7 +117,7 @@ def _run_guarded(program: str, run: Callable[[], int], own_process: bool) -> int
     sys.stderr = sys.stderr or io.StringIO()
     try:
         if own_process:
-            sys.unraisablehook = _not_lost
+            sys.unraisablehook = _raise_interrupt
             signal.signal(signal.SIGTERM, signal.default_int_handler)
             if signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:  # under nohup it is ignored
                 signal.signal(signal.SIGHUP, signal.default_int_handler)

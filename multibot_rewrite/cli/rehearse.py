@@ -19,19 +19,18 @@ from multibot_rewrite.live.rehearsal import (
     Stub,
     bridge_stub,
     domain_bridge_stubs,
-    staged,
-    stages,
+    graph_of_stubs,
+    isolated_environments,
     stub_nodes,
     with_own_types,
     with_substitutes,
     without_doubles,
 )
 from multibot_rewrite.planning.transforms import with_odometry
-from multibot_rewrite.planning.ways import WAYS
 from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import WAYS, System
 
 # Where a plan is of one domain, its number is none of a system.
 ONE = -1
@@ -57,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
         (run._replace(robot=made.name(run.robot)), sent)
         for run, sent in without_doubles(stub_nodes(made.table, edges, ways), plan)
     ]
-    seen, replaced = _played(options, plan, nodes)
+    seen, replaced = _play(options, plan, nodes)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
     seen = {it: with_own_types(graph, plan, replaced) for it, graph in seen.items()}
@@ -72,13 +71,13 @@ def run(options: argparse.Namespace) -> int:
     return conclude(options, plan, graph, found, table)
 
 
-def _played(
+def _play(
     options: argparse.Namespace, plan: System, nodes: Sequence[Stub]
 ) -> tuple[dict[int, System], dict[str, str]]:
-    """Play the stubs and return the graph seen in each domain of the plan, and the replaced types. The
-    domains they are played in are free ones of this machine."""
+    """Play the stubs; return the graph of each domain of the plan, and the replaced types."""
+    # The domains they are played in are free ones of this machine.
     parts, numbers = by_domain(plan) or {ONE: plan}, domain_of(plan)
-    environs = stages(options.domain, len(parts))
+    environs = isolated_environments(options.domain, len(parts))
     casts = {
         it: [
             *(stub for stub in nodes if numbers.get(stub[0].robot, ONE) == it),
@@ -90,7 +89,7 @@ def _played(
     where = ", ".join(it["ROS_DOMAIN_ID"] for it in environs)
     count = plural(sum(map(len, casts.values())), "node")
     started = f"{count} in domain{'s' * (len(environs) > 1)} {where}"
-    play = partial(staged, seconds=options.timeout or live.LOOK_SECONDS)
+    play = partial(graph_of_stubs, seconds=options.timeout or live.LOOK_SECONDS)
     with shown(f"{started} are looked for"), ThreadPoolExecutor(len(parts)) as pool:
         played = dict(zip(parts, pool.map(play, casts.values(), environs), strict=True))
     note(options, started)

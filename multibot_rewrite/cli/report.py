@@ -28,9 +28,7 @@ NO_RULES: Mapping[str, Rule] = MappingProxyType({})
 
 
 class About(NamedTuple):
-    """What findings are about: the files that were read, the words that stand for robots in texts (a
-    name, a prefix), each with its robot, the release whose facts they rest on, and how much of the
-    robots was there to be judged."""
+    """What findings are about: files, words for robots, the release, and how much was judged."""
 
     files: Sequence[str]
     robots: Mapping[str, str] = NO_ROBOTS
@@ -85,7 +83,7 @@ def report_first(
     rules: Mapping[str, Rule] = NO_RULES,
 ) -> bool:
     """Write the findings, which are the result; return whether ``--fail-on`` matches any."""
-    text = _text(options, findings, about, rules, colour=prints_colour(options))
+    text = _report_text(options, findings, about, rules, colour=prints_colour(options))
     deliver(options, text.encode())
     return fails(findings, options.fail_on)
 
@@ -99,18 +97,18 @@ def report_findings_too(
     if options.format == TEXT:
         colour = is_coloured(options.color, sys.stderr)
         shown = findings if options.verbose else list(_few_of_a_kind(findings))
-        sys.stderr.write(_text(options, shown, about, NO_RULES, colour=colour))
+        sys.stderr.write(_report_text(options, shown, about, NO_RULES, colour=colour))
     else:
-        print_bytes(_text(options, findings, about, NO_RULES, colour=False).encode())
+        print_bytes(_report_text(options, findings, about, NO_RULES, colour=False).encode())
     return fails(findings, options.fail_on)
 
 
 def _few_of_a_kind(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """Yield the findings; of many of one kind in a file one, with the lines of the others."""
-    lines = lists_by_key((_kind_of(it), it.line) for it in findings)
+    """Yield the findings; many of one kind in a file as one with all lines."""
+    lines = lists_by_key((_shared_kind(it), it.line) for it in findings)
     met: Counter[tuple[str, ...]] = Counter()
     for it in findings:
-        kind = _kind_of(it)
+        kind = _shared_kind(it)
         met[kind] += 1
         shown = 1 if it.level == WARNING else FEW_NOTES
         rest = lines[kind][shown:]
@@ -126,16 +124,16 @@ def _few_of_a_kind(findings: Sequence[Finding]) -> Iterator[Finding]:
             yield it._replace(message=message, hint="see them with --verbose")
 
 
-def _kind_of(it: Finding) -> tuple[str, ...]:
-    """Return what a finding shares with others that are said with it: warnings their remedy, too. Empty
-    for an error, and for a warning of robots, which is said once for all of these elsewhere."""
+def _shared_kind(it: Finding) -> tuple[str, ...]:
+    """Return what a finding shares with others that are shown with it; empty if shown alone."""
+    # Warnings share their remedy, too; those of robots are shown once for all elsewhere.
     if it.line and it.level == NOTE:
         return it.level, it.code, it.file
     alone = not it.line or it.level != WARNING or it.robot or it.robots
     return () if alone else (it.level, it.code, it.file, it.hint)
 
 
-def _text(
+def _report_text(
     options: argparse.Namespace,
     findings: Sequence[Finding],
     about: About,

@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _is_related_file(source: Source) -> bool:
-    """Return ``is_related_file``; a source named as a description is not asked."""
+    """Return whether a source is a related file, and not named as a description."""
     if isinstance(source, str) and source.endswith((".urdf", ".sdf", ".xacro")):
         return False
     from multibot_rewrite.related_files.named_file import is_related_file
@@ -75,6 +75,7 @@ def _is_related_file(source: Source) -> bool:
 
 
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
+    """Write the description without the robot's name; return the exit code."""
     from multibot_rewrite.cli.undo_options import (  # a rewrite needs none of it
         more_to_undo,
         with_missing_options,
@@ -92,7 +93,7 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     try:
         stripped = undo(options)
     except RewriteRefused as error:
-        raise with_missing_options(error, options, undo, robot) from None
+        raise with_missing_options(error, options, undo, robot, read.data) from None
     check_unread(options, [robot], (*read.read, *beside))
     deliver(options, [(robot, read.data, stripped)], 1)
     tell(options, f"{robot} taken out, verified by rewriting again")
@@ -102,6 +103,7 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 
 def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
+    """Write the description for each robot; return the exit code."""
     file = input_name(options)
     if doubt := release_doubt(options.distro):
         tell(options, f"warning: {doubt}")
@@ -165,6 +167,7 @@ def _check_shared(
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
+    """Return the description without the robot's name."""
     given = rewriting(options)
     if not options.xacro:
         given["xacro_args"] = None
@@ -174,8 +177,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
 def summary(
     first: Rewrite, robots: list[str], own_arguments: str = "", of_release: str = ""
 ) -> str:
-    """Return one line: the number of renamed names of each kind, the names that arguments of the xacro
-    set, whether the result is verified, and the release with the reason for it."""
+    """Return one line: renamed names of each kind, those by arguments, verification, release."""
     inventory, plan = first.template.inventory, first.template.plan
     names = {
         (kind, claim.value)

@@ -222,7 +222,7 @@ def _hint(
     result: object,
     names: Mapping[str, Collection[str]],
 ) -> str:
-    """Return what was probably meant: the same name of the other kind, or one that is like it."""
+    """Return what was probably meant: the name as a frame or topic, or a similar one."""
     kind, other = (TOPICS, FRAMES) if word.startswith("/") else (FRAMES, TOPICS)
     bare = word.strip("/")
     spelled = bare if other == FRAMES else f"/{bare}"

@@ -87,6 +87,7 @@ def _check_use(options: argparse.Namespace) -> bool:
 
 
 def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
+    """Print a limitation of the snapshot."""
     if caveat.incomplete:
         say(f"incomplete: {caveat.message}", PROGRAM)
     else:
@@ -136,6 +137,7 @@ def _state_rows(snapshot: System, nodes: Iterable[str]) -> Iterator[tuple[str, .
 
 
 def _headline(snapshot: System) -> str:
+    """Return one line about what was seen, and for how long."""
     around = snapshot.environment
     nodes, many = len(snapshot.nodes), around.participants
     seen = len(machines(snapshot))
@@ -167,7 +169,7 @@ def is_asked(options: argparse.Namespace) -> bool:
 
 
 def write_nodes(options: argparse.Namespace, graph: System) -> int:
-    """Learn, write_nodes, note what is left out; returns the exit code."""
+    """Describe the nodes of a graph and write that; return the exit code."""
     doubtful = doubts(graph)
     for caveat in doubtful:
         say(f"incomplete: {caveat.message}", PROGRAM)
@@ -203,7 +205,7 @@ def is_nodl(options: argparse.Namespace) -> bool:
 
 
 def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Iterator[str]:
-    """Write a document to a file or standard output, several below a folder; what is left out."""
+    """Write NoDL documents to a file or folder; yield what is left out."""
     if not goes_to_file(options) or options.output.endswith(SUFFIXES):
         if len(found) > 1:
             hint = "name one with --node, or a folder with -o"
@@ -220,6 +222,7 @@ def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Itera
 def _notes(
     graph: System, learned: Sequence[LearnedNode], namespace: str | None, named: bool
 ) -> Iterator[str]:
+    """Yield what is left out of the description of nodes, and why."""
     for node in learned:
         yield from (f"{node.seen}: {remark}" for remark in node.remarks)
     lost = helpers_without_owner(graph, [node.seen for node in learned])

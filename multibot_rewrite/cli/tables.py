@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports for a person: lines and tables. A name is never cut in two: a table folds between names,
-and where even that does not fit, each row becomes lines of its own."""
+"""Reports for a person: lines and tables, in which no name is cut in two.
+
+A table folds between names, and where even that does not fit, each row becomes lines of its own."""
 
 import argparse
 import sys
@@ -43,18 +44,20 @@ def _width(options: argparse.Namespace) -> int | None:
 
 def render(parts: Iterable[str | Grid], width: int | None = None, colour: bool = False) -> str:
     """Return the report as text; without a ``width`` nothing is folded."""
-    return "".join(f"{line.rstrip()}\n" for part in parts for line in _lines(part, width, colour))
+    return "".join(
+        f"{line.rstrip()}\n" for part in parts for line in _part_lines(part, width, colour)
+    )
 
 
-def _lines(part: str | Grid, width: int | None, colour: bool) -> Iterable[str]:
+def _part_lines(part: str | Grid, width: int | None, colour: bool) -> Iterable[str]:
     if isinstance(part, str):
         return [one_line(part)]
     rows = [[one_line(cell) for cell in row] for row in part.rows]
-    return _table(part._replace(rows=rows), width, colour)
+    return _table_lines(part._replace(rows=rows), width, colour)
 
 
-def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
-    widths = _fitted(grid, width)
+def _table_lines(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
+    widths = _column_widths(grid, width)
     if widths is None:
         # A line for each cell, an empty one between rows.
         longest = max(map(len, grid.columns))
@@ -63,17 +66,17 @@ def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
             cells = zip(grid.columns, row, strict=True)
             yield from (f"{name.ljust(longest)}  {text}" for name, text in cells if text)
         return
-    head = next(_row(grid.columns, grid, widths))
+    head = next(_row_lines(grid.columns, grid, widths))
     yield f"\033[1m{head.rstrip()}\033[0m" if colour else head
     for row in grid.rows:
-        yield from _row(row, grid, widths)
+        yield from _row_lines(row, grid, widths)
 
 
-def _fitted(grid: Grid, width: int | None) -> list[int] | None:
+def _column_widths(grid: Grid, width: int | None) -> list[int] | None:
     """Return the width of each column; None if names would have to be cut."""
     columns = [*zip(grid.columns, *grid.rows, strict=True)]
     natural = [max(map(len, cells)) for cells in columns]
-    least = [max(len(it) for cell in cells for it in _pieces(cell)) for cells in columns]
+    least = [max(len(it) for cell in cells for it in _cell_pieces(cell)) for cells in columns]
     room = sum(natural) if width is None else width - len(GAP) * (len(columns) - 1)
     if sum(least) > room:
         return None
@@ -86,12 +89,12 @@ def _fitted(grid: Grid, width: int | None) -> list[int] | None:
     return least
 
 
-def _pieces(cell: str) -> list[str]:
+def _cell_pieces(cell: str) -> list[str]:
     """Return the parts of a cell between which it may be folded."""
     return [it.rstrip() for it in _PIECE.findall(cell) if it] or [""]
 
 
-def _folded(cell: str, width: int) -> list[str]:
+def _folded_cell(cell: str, width: int) -> list[str]:
     """Return a cell in lines of that width."""
     lines = [""]
     for piece in filter(None, _PIECE.findall(cell)):
@@ -101,9 +104,9 @@ def _folded(cell: str, width: int) -> list[str]:
     return lines
 
 
-def _row(row: Sequence[str], grid: Grid, widths: Sequence[int]) -> Iterator[str]:
+def _row_lines(row: Sequence[str], grid: Grid, widths: Sequence[int]) -> Iterator[str]:
     """Yield the lines of a row, usually one."""
-    folded = [_folded(cell, width) for cell, width in zip(row, widths, strict=True)]
+    folded = [_folded_cell(cell, width) for cell, width in zip(row, widths, strict=True)]
     for line in zip_longest(*folded, fillvalue=""):
         cells = zip(line, grid.columns, widths, strict=True)
         yield GAP.join(

@@ -112,13 +112,14 @@ def _report(
     verdict = Verdict.WRONG if failed else inconclusive
     words = verdict_words(verdict, findings, seen.coverage, planned=False)
     outcome = Outcome(verdict, words, "multibot check", planned=False, reasons=tuple(unsure))
-    _suggest(options, each)
+    _write_suggestion(options, each)
     plan = seen_plan(seen) if options.report else seen.graph
     pictures.conclude(options, plan, seen.graph, findings, outcome, about)
     return live.CODES[verdict]
 
 
 def _about(options: argparse.Namespace, seen: Diagnosis) -> About:
+    """Return what the findings are about."""
     return About(options.snapshot, by_themselves(seen.whose.robots), coverage=seen.coverage)
 
 
@@ -129,8 +130,8 @@ def _nothing_seen(seen: Diagnosis) -> Iterator[str]:
         yield "no node of a robot is in this graph, so there is nothing to judge"
 
 
-def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None:
-    """Write what a fleet begins with, for each domain by itself: a name may be in several of them."""
+def _write_suggestion(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None:
+    """Write a first fleet file and plan, for each domain by itself."""
     if not options.suggest:
         return
     from multibot_rewrite.knowledge.node_sets import built_in
@@ -149,8 +150,9 @@ def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None
 
 
 def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
+    """Report at each change; return the exit code."""
     each: dict[int, Diagnosis] = {}
-    last = follow(_looking(each), live.watched(options, domains=domains), planned=False)
+    last = follow(_judging(each), live.watched(options, domains=domains), planned=False)
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
@@ -160,14 +162,14 @@ def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
     if options.output:
         report_first(options, last.findings, about)
     outcome = Outcome(final(last), words, "multibot check", planned=False)
-    _suggest(options, each)
+    _write_suggestion(options, each)
     pictures.conclude(options, seen_plan(seen), last.graph, last.findings, outcome, about)
     return live.CODES[final(last)]
 
 
-def _looking(each: dict[int, Diagnosis]) -> Look:
-    """Return a function that judges one graph after another; ``each`` keeps the last. A robot that ran
-    is reported when it is gone."""
+def _judging(each: dict[int, Diagnosis]) -> Look:
+    """Return a function that judges one graph after another; ``each`` keeps the last."""
+    # A robot that ran is reported when it is gone.
     known: dict[str, set[str]] = {}
 
     def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the options say, in the terms of the library: robots, xacro arguments, the naming policy."""
+"""Reads the options as the library takes them: robots, xacro arguments, the naming policy."""
 
 from __future__ import annotations
 
@@ -58,12 +58,12 @@ def separators(options: argparse.Namespace) -> dict[str, str]:
 
 
 def plain_words(options: argparse.Namespace) -> list[str]:
-    """Return the words that are not xacro arguments."""
+    """Return the positional arguments that are not xacro arguments."""
     return [word for word in options.words if ":=" not in word]
 
 
 def robots(options: argparse.Namespace) -> list[str]:
-    """Return the robots: as words, by ``--robots``, or as many as ``--count`` says, with numbers."""
+    """Return the robots: named, by ``--robots``, or numbered up to ``--count``."""
     named, count = named_robots(options), vars(options).get("count")
     if count is None:
         return named
@@ -73,7 +73,7 @@ def robots(options: argparse.Namespace) -> list[str]:
 
 
 def check_order(program: str, first: str, words: Sequence[str]) -> None:
-    """Raise UsageError where a file is named behind what is none."""
+    """Raise UsageError if a file is named after another argument."""
     file = next(filter(os.path.isfile, words), "")
     if file and not os.path.exists(first):
         right = shlex.join([file, first, *(it for it in words if it != file)])
@@ -91,7 +91,7 @@ def asked_number(options: argparse.Namespace) -> int:
 
 
 def named_robots(options: argparse.Namespace) -> list[str]:
-    """Return the robots that have a name, as words and by ``--robots``."""
+    """Return the robots that are named, as arguments or by ``--robots``."""
     words = plain_words(options)
     wrong = next((word for word in words if "=" in word), None)
     if wrong is not None and options.separator:
@@ -101,13 +101,13 @@ def named_robots(options: argparse.Namespace) -> list[str]:
 
 
 def xacro_args(options: argparse.Namespace) -> dict[str, str]:
-    """Return the xacro arguments in the words, as name -> value."""
+    """Return the xacro arguments, name -> value."""
     pairs = [word.partition(":=") for word in options.words if ":=" in word]
     return {name: value for name, _, value in pairs}
 
 
 def arguments_alone(options: argparse.Namespace) -> dict[str, str]:
-    """Return the xacro arguments of a command without other words; raises UsageError for these."""
+    """Return the xacro arguments; raises UsageError for any other argument."""
     if others := plain_words(options):
         raise UsageError(f"{others[0]!r} is one word too many; xacro arguments are NAME:=VALUE")
     return xacro_args(options)
@@ -120,5 +120,5 @@ def check_xacro(options: argparse.Namespace, paths: Sequence[str]) -> None:
 
 
 def given_options(options: argparse.Namespace, names: Mapping[str, str]) -> list[str]:
-    """Return those of the options (destination -> how it is written) that are given."""
+    """Return the written names of those of the options that are given."""
     return [written for name, written in names.items() if getattr(options, name)]

@@ -80,7 +80,7 @@ def zenoh_endpoint(text: str) -> str:
 
 
 def one_of(known: Collection[str]) -> Callable[[str], str]:
-    """Return a reader for one of the known words; it refuses another one with the nearest of them."""
+    """Return a function that reads a known value, and refuses others with the nearest one."""
 
     def read(text: str) -> str:
         if text in known:
@@ -95,13 +95,13 @@ def one_of(known: Collection[str]) -> Callable[[str], str]:
 
 
 def some_of(known: Collection[str]) -> Callable[[str], list[str]]:
-    """Return a function that reads some of the known words, separated by commas."""
+    """Return a function that reads known values, separated by commas."""
     read = one_of(known)
     return lambda text: [read(it) for it in names(text)]
 
 
 def word(text: str) -> str:
-    """Return one word, as the name of a node set is."""
+    """Return a single name, as that of a node set."""
     if not _WORD.fullmatch(text):
         raise argparse.ArgumentTypeError(f"{text!r} is not a name of a node set, give one word")
     return text

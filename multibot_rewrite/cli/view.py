@@ -23,8 +23,15 @@ from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
-from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
-from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, moved, scene_of
+from multibot_rewrite.pages.view.page import (
+    Meshes,
+    meshes_of,
+    remark_if_empty,
+    title_of,
+    to_frame,
+    to_html,
+)
+from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, moved_links, scene_of
 from multibot_rewrite.planning.plan import is_fleet
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
@@ -35,12 +42,12 @@ from multibot_rewrite.system.records import System
 def run(options: argparse.Namespace) -> int:
     """Rewrite, load, write the page; returns the exit code."""
     check_use(options, "view", printed=not goes_to_file(options))
-    plan = _plan(options)
+    plan = _plan_of(options)
     check_target(options.output, [*input_files(plan.file), *options.snapshot])
-    scene = scene_of(plan, _graph(options))
+    scene = scene_of(plan, _given_graph(options))
     meshes = _meshes(scene)
     page = to_html(scene, meshes, title_of(scene.robots, plan.fleet.naming.layout.name))
-    for it in _notes(scene.robots, meshes):
+    for it in _scene_notes(scene.robots, meshes):
         note(options, f"note: {it}")
     deliver(options, page)
     size = f"{len(page) / 1e6:.1f} MB"
@@ -51,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _graph(options: argparse.Namespace) -> System | None:
+def _given_graph(options: argparse.Namespace) -> System | None:
     """Return the saved or recorded graph with tf, or None without one."""
     if options.zenoh:
         raise UsageError("view shows what was saved or recorded: save it with multibot snapshot")
@@ -60,16 +67,16 @@ def _graph(options: argparse.Namespace) -> System | None:
     return read_snapshots(options.snapshot) if options.snapshot else None
 
 
-def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
+def _scene_notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
     """Yield notes: meshes that are missing or unreadable, robots without a shape, differing tf."""
     shapes = (it for one in robots for its in one.model.links.values() for it in its)
     unread = (why for why in meshes.values() if isinstance(why, str))
     for missing in sorted({*(it.missing for it in shapes if it.missing), *unread}):
         yield f"{missing}, it is shown as a box"
     for robot in robots:
-        if nothing := bare(robot.model):
+        if nothing := remark_if_empty(robot.model):
             yield f"{robot.name}: {nothing}"
-        if off := list(moved(robot.model.joints, robot.transforms)):
+        if off := list(moved_links(robot.model.joints, robot.transforms)):
             yield (
                 f"{robot.name}: on tf, fixed joints are not as in the description"
                 f" ({shorten(off, SEVERAL)}): robot_state_publisher has another description, or another"
@@ -87,7 +94,7 @@ def framed(options: argparse.Namespace, graph: System) -> Framed | None:
         file = _fleet_file(options.plan) if given.get("plan") else ""
         if not (file or given.get("input")):
             return None
-        plan = _fleet(options, file) if file else _plan(options)
+        plan = _planned_fleet(options, file) if file else _plan_of(options)
         scene = scene_of(plan, graph)
         title = title_of(scene.robots, plan.fleet.naming.layout.name)
         return to_frame(scene, _meshes(scene), title)
@@ -97,6 +104,7 @@ def framed(options: argparse.Namespace, graph: System) -> Framed | None:
 
 
 def _meshes(scene: ShownScene) -> Meshes:
+    """Return the meshes of a scene, with progress on the terminal."""
     show = status()
     try:
         return meshes_of(scene, show)
@@ -116,12 +124,12 @@ def _fleet_file(path: str) -> str:
     return ""
 
 
-def _plan(options: argparse.Namespace) -> FleetPlan:
+def _plan_of(options: argparse.Namespace) -> FleetPlan:
     """Return the fleet of a fleet file, or of a description and names of robots."""
     first: str = options.input
     if first.endswith(FLEET_FILES):
         check_own(options)
-        return _fleet(options, first)
+        return _planned_fleet(options, first)
     check_xacro(options, [first])
     read_file(first)
     names, arguments = robots(options) or ["robot1"], xacro_args(options)
@@ -132,12 +140,12 @@ def _plan(options: argparse.Namespace) -> FleetPlan:
         "robots": [{"name": name, "pose": {"y": 1.5 * at}} for at, name in enumerate(names)],
     }
     try:
-        return _fleet(options, {key: value for key, value in data.items() if value})
+        return _planned_fleet(options, {key: value for key, value in data.items() if value})
     except InputError as error:
         raise InputError(without_place(str(error))) from None
 
 
-def _fleet(options: argparse.Namespace, source: str | dict[str, Any]) -> FleetPlan:
+def _planned_fleet(options: argparse.Namespace, source: str | dict[str, Any]) -> FleetPlan:
     choice = Choice(number=asked_number(options) if isinstance(source, str) else 0)
     file = read_fleet(source, options.distro or "", os.environ, choice)
     return plan_fleet(file, trust=options.trust)

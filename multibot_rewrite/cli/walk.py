@@ -27,7 +27,7 @@ class FoundFiles(NamedTuple):
 
     @property
     def left_out(self) -> str:
-        """What was left out, and how to read it all the same; "" for nothing."""
+        """What was left out, and how to include it; "" for nothing."""
         folders = f"{plural(len(self.folders), 'folder')} ({shorten(self.folders)})"
         files = f"{plural(len(self.ignored), 'file')} that git ignores"
         parts = [folders] * bool(self.folders) + [files] * bool(self.ignored)
@@ -54,9 +54,9 @@ def find_files(
         if not os.path.exists(path):
             raise UsageError(f"{path}: there is no such file or folder")
         kept = None if everything else left_out
-        below = _below(path, suffixes, unreadable, kept)
+        below = _files_below(path, suffixes, unreadable, kept)
         every += filter(wanted, below) if os.path.isdir(path) else (path,)
-    ignored = set() if everything else _ignored(paths, every)
+    ignored = set() if everything else _git_ignored(paths, every)
     found: dict[str, str] = {}
     for path in every:
         if path not in ignored:
@@ -69,7 +69,7 @@ def find_files(
     return result
 
 
-def _ignored(named: Collection[str], every: Iterable[str]) -> set[str]:
+def _git_ignored(named: Collection[str], every: Iterable[str]) -> set[str]:
     """Return the files that git ignores, but not those named, or in a named folder that git ignores."""
     found = ignored_by_git(it for it in every if it not in named)
     folders = [it for it in named if os.path.isdir(it)] if found else []
@@ -77,7 +77,7 @@ def _ignored(named: Collection[str], every: Iterable[str]) -> set[str]:
     return {it for it in found if not it.startswith(tuple(meant))}
 
 
-def _below(
+def _files_below(
     top: str,
     suffixes: tuple[str, ...],
     unreadable: Callable[[OSError], None],
@@ -127,8 +127,8 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--output") -
 
 
 def check_link(target: str) -> None:
-    """Raise UsageError where ``target`` is a link: a result would replace what nobody named. The links
-    of the system, as /dev/stdout is, are what they lead to."""
+    """Raise UsageError if ``target`` is a link: a result would replace what nobody named."""
+    # Links of the system, as /dev/stdout, are what they lead to.
     folder = os.path.realpath(os.path.dirname(target) or ".")
     if os.path.islink(target) and not folder.startswith(("/dev", "/proc")):
         real = os.path.realpath(target)

@@ -30,7 +30,7 @@ Look = Callable[[Views], tuple[System, Coverage, Sequence[Finding]]]
 def follow(
     look: Look, snapshots: Generator[Views, None, None], planned: bool = True
 ) -> WatchState | None:
-    """Show every change until the snapshots end or the user ends it; the last state."""
+    """Show every change until the snapshots end or the user ends it; return the last state."""
     state: WatchState | None = None
     with ExitStack() as stack:
         stack.enter_context(closing(snapshots))
@@ -62,12 +62,12 @@ def _screen(planned: bool) -> Iterator[Show]:
 
     with Live(auto_refresh=False) as live:
         yield lambda state: live.update(
-            Text.from_ansi(render(_parts(planned, state), live.console.width, colour=True)),
+            Text.from_ansi(render(_screen_parts(planned, state), live.console.width, colour=True)),
             refresh=True,
         )
 
 
-def _parts(planned: bool, state: WatchState) -> Iterator[str | Grid]:
+def _screen_parts(planned: bool, state: WatchState) -> Iterator[str | Grid]:
     yield _headline(planned, state)
     yield ""
     findings, held = Counter(it.robot for it in state.findings), state.coverage
@@ -92,7 +92,7 @@ def _line_for_more(count: int, what: str) -> Iterator[str]:
 
 
 def _headline(planned: bool, state: WatchState) -> str:
-    """Return one line: how much is there, and what it comes to."""
+    """Return one line: how much is seen, and the result."""
     moving = state.graph.environment.settled == CHANGING
     words = verdict_words(state.verdict, state.findings, state.coverage, planned)
     found = plural(len(state.findings), "finding")

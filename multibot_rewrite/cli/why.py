@@ -18,7 +18,7 @@ from multibot_rewrite.related_files.named_file import is_related_file
 
 def run(options: argparse.Namespace) -> int:
     """Print an explanation of every value on the line."""
-    path, line = _place(options.why)
+    path, line = _file_and_line(options.why)
     if is_related_file(path):
         raise UsageError(f"--why is for descriptions, {path} is none; --diff shows what changes")
     # The file is in the option: what stands first is a robot or a xacro argument.
@@ -28,28 +28,28 @@ def run(options: argparse.Namespace) -> int:
     found = explain(path, line, robot, **rewriting(options))
     if not found:
         raise UsageError(f"{options.why}: no value starts on this line")
-    deliver_report(options, (line for it in found for line in _lines(it, path, robot)))
+    deliver_report(options, (line for it in found for line in _explanation_lines(it, path, robot)))
     return DONE
 
 
-def _place(text: str) -> tuple[str, int]:
+def _file_and_line(text: str) -> tuple[str, int]:
     path, colon, line = text.rpartition(":")
     if not colon or not line.isdigit() or not path:
         raise UsageError(f"--why {text}: write FILE:LINE, for example rover.urdf:34")
     return path, int(line)
 
 
-def _lines(item: Explanation, path: str, robot: str) -> Iterator[str]:
+def _explanation_lines(item: Explanation, path: str, robot: str) -> Iterator[str]:
     within = f", of {item.within}" if item.within else ""
     yield f"{path}:{item.line}:{item.column}: {item.path}{within}"
-    yield from _facts(item, robot)
+    yield from _fact_lines(item, robot)
     if item.made_of:
         yield f"  made of: {' + '.join(item.made_of)}"
     if item.source:
         yield f"  source: {item.source}"
 
 
-def _facts(item: Explanation, robot: str) -> Iterator[str]:
+def _fact_lines(item: Explanation, robot: str) -> Iterator[str]:
     """Yield the facts about one value, indented below its place."""
     if item.inserted:
         yield f"  [{item.value}] gets for {robot}: {item.reason}"

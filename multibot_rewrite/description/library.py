@@ -14,7 +14,7 @@ from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Change
-from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves, make_naming
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves_world_systems, make_naming
 from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
@@ -35,8 +35,7 @@ if TYPE_CHECKING:
 
 
 class Prepared:
-    """A job and its template. A copy and a pickle hold the job alone: lxml's elements cannot be
-    copied to another process, and the template is made again when something asks for it."""
+    """A job and its template; copies and pickles hold the job alone and make the template again."""
 
     def __init__(self, job: Job) -> None:
         self.job = job
@@ -77,8 +76,7 @@ class Rewrite(NamedTuple):
 
     @property
     def template(self) -> Template:
-        """What the text was made from. A copy makes it again: it raises as ``rewrite`` does where
-        a definition file is gone."""
+        """The template of the text; a copy makes it again and raises as ``rewrite``."""
         return self.prepared.template
 
     @property
@@ -88,13 +86,12 @@ class Rewrite(NamedTuple):
 
     @property
     def not_verified(self) -> tuple[str, ...]:
-        """Why the robots may meet, with counts, as ``1 topic shared by all robots``; empty where the
-        rewrite is verified. Raises nothing."""
+        """Why robots may collide, with counts; empty if the rewrite is verified. Raises nothing."""
         return not_verified(self.findings)
 
     @property
     def not_proved(self) -> tuple[str, ...]:
-        """Return the same, for scripts written for 0.2; raises nothing."""
+        """Why robots may collide, for scripts written for 0.2; raises nothing."""
         return self.not_verified
 
     @property
@@ -148,7 +145,7 @@ def rewrite(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     given = (urdf, xacro_args, definitions, file, [robot], trust)
-    aside = leaves(world_systems, [robot])
+    aside = leaves_world_systems(world_systems, [robot])
     job = read_job(source, naming, *given, release=release_chosen_here(distro), aside=aside)
     return next(rewrite_job(job, [robot], again))
 
@@ -192,7 +189,7 @@ def rewrite_all(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = check_robot_names(robots)
     given = (urdf, xacro_args, definitions, file, trust, release_chosen_here(distro))
-    jobs = read_jobs(names, source, naming, *given, leaves(world_systems, names))
+    jobs = read_jobs(names, source, naming, *given, leaves_world_systems(world_systems, names))
     return _with_own_ports(rewrite_jobs(jobs, again))
 
 
@@ -218,7 +215,7 @@ def _with_own_ports(made: Iterator[Rewrite]) -> Iterator[Rewrite]:
 
 
 def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterator[Rewrite]:
-    """Rewrite what was read, raises as ``rewrite_all``."""
+    """Rewrite a job for some robots; raises as ``rewrite_all``."""
     check_robot_names(robots)
     prepared = Prepared(job)
     template = prepared.template

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ports such as the one at which an autopilot is met: each further robot that has the number of an
-earlier one gets the next that is free.
+"""Gives each further robot the next free number for a port that an earlier robot has.
 
 A comment in front of what is changed says what was there, so that ``--undo`` can give it back:
 
@@ -53,9 +52,10 @@ _DEFAULT = "the default"
 
 
 class Port(NamedTuple):
-    """A number of a robot, the parameter that holds it, the step to that of the next robot, the last
-    one that there is, and what is replaced to change it: ``text`` with the number in it. ``element``
-    holds it and begins ``at``, or gets it there."""
+    """A port number, the element and parameter with it, and what ``text`` replaces to change it.
+
+    ``step`` leads to the next robot's number, ``last`` is the largest; ``element`` begins
+    ``at``."""
 
     name: str
     number: int
@@ -74,8 +74,7 @@ class Port(NamedTuple):
 
 
 class Numbered(NamedTuple):
-    """The texts of robots with numbers of their own, and what is said of them: the message and what
-    to do for each parameter."""
+    """The texts of robots with own port numbers, and a message and a hint for each parameter."""
 
     texts: tuple[bytes, ...]
     notes: tuple[tuple[str, str], ...]
@@ -91,11 +90,11 @@ def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
     for robot, (text, own) in robots.items():
         new: dict[int, int] = {}
         for it in own:
-            new[it.number] = new.get(it.number) or _free(it, held, taken)
+            new[it.number] = new.get(it.number) or _next_free_number(it, held, taken)
             taken.add(new[it.number])
             given.setdefault(it.name, []).append((robot, new[it.number]))
         held |= {*new.values()}
-        edits = _edits(robot, ((it, new[it.number]) for it in own))
+        edits = _port_edits(robot, ((it, new[it.number]) for it in own))
         changed |= {it.name for it in own if new[it.number] != it.number}
         texts.append(b"".join(cut(text, edits)) if edits else text)
     notes = tuple(numbers_message(it, given[it]) for it in sorted(changed))
@@ -110,8 +109,8 @@ def numbers_message(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, s
     return message, "start what each robot talks to with its number"
 
 
-def _free(port: Port, held: set[int], taken: set[int]) -> int:
-    """Return the next free number; its own where no other is left, which the second reading finds."""
+def _next_free_number(port: Port, held: set[int], taken: set[int]) -> int:
+    """Return the next free number for a port; the robot's own if none is left."""
     number = port.number
     while number in held or (number in taken and number != port.number):
         number += port.step
@@ -128,12 +127,12 @@ def ports_of(inventory: Inventory) -> Iterator[Port]:
             if opened.step and (not opened.when or holds(host, opened.when)):
                 there = list(elements_at(host, grammar.split_path(opened.path)[0]))
                 for it in there:
-                    yield from _written(document.source, starts[it], it, opened)
+                    yield from _written_ports(document.source, starts[it], it, opened)
                 if opened.default and not there:
                     yield from _default(document.source, starts, host, opened)
 
 
-def _written(
+def _written_ports(
     source: bytes, start: int, element: _Element, opened: grammar.Opened
 ) -> Iterator[Port]:
     text = text_of(element)
@@ -159,7 +158,7 @@ def _default(
         yield Port(value or opened.path, number, *opened.numbers, inside, at, at, at, text)
 
 
-def _edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
+def _port_edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
     edits = []
     # What is put at the begin of another element stands before its comment.
     for it, number in sorted(given, key=lambda pair: pair[0].is_written):
@@ -173,15 +172,14 @@ def _edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
 
 
 def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
-    """Return the text of a robot with its original numbers, verified by numbering it again; raises
-    InputError for one that was edited by hand."""
+    """Return the text with the original numbers, verified; raises InputError if it was edited."""
     document = read_document(source, file)
     edits = sorted(_taken_out(document, robot), key=lambda it: it.start)
     if not edits:
         return source
     text = b"".join(cut(source, edits))
     before, now = (ports_of(collect(it, tree)) for it in (read_document(text, file), document))
-    again = _edits(robot, ((it, new.number) for it, new in zip(before, now, strict=False)))
+    again = _port_edits(robot, ((it, new.number) for it, new in zip(before, now, strict=False)))
     if b"".join(cut(text, again)) != source:
         raise _edited_by_hand(document, robot)
     return text
@@ -224,8 +222,7 @@ def number_changes(template: Template, data: bytes) -> Iterator[Change]:
 def judged_together(
     template: Template, texts: Mapping[str, bytes]
 ) -> tuple[list[bytes], list[Finding]]:
-    """Return the texts of these robots with numbers of their own, and the findings: each number, and
-    names that two robots share all the same."""
+    """Return the texts of robots with own port numbers, and findings: numbers and shared names."""
     document, definitions = template.inventory.document, template.tree.definitions
     file = document.file
     again = {it: collect(read_document(texts[it], file), template.tree) for it in texts}

@@ -38,8 +38,9 @@ def prepare(
     own: OwnSource = OF_ALL,
 ) -> Template:
     """Return everything that does not depend on a robot's name; raises InputError, RewriteRefused.
-    ``urdf_declarations`` is what the URDF of an SRDF declares. ``own`` says more of a source that
-    is one robot's own."""
+
+    ``urdf_declarations`` is what an SRDF's URDF declares; ``own`` is of a source made for one
+    robot."""
     inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
@@ -115,7 +116,7 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
 
 
 def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:
-    """Raise RewriteRefused where names of these kinds carry a robot's name already."""
+    """Raise RewriteRefused if names of these kinds contain a robot's name already."""
     inventory, own = prepared.inventory, prepared.naming.own
     found = already_rewritten(inventory, robots, False, own, kinds)
     _stop_on_errors([*to_findings(inventory.document, found, ERROR)])

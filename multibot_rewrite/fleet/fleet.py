@@ -17,7 +17,8 @@ from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interface
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models
 from multibot_rewrite.planning.domain_bridge import with_bridges
-from multibot_rewrite.planning.plan import expect, named_frames, vacuous, words_of
+from multibot_rewrite.planning.plan import vacuous, words_of
+from multibot_rewrite.planning.planned_system import expect, named_frames
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table, joined, plugin_nodes
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
@@ -45,17 +46,15 @@ FRAME_PREFIX = "frame_prefix"
 
 
 class Fleet(NamedTuple):
-    """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
-    each robot's nodes publish. All have the robots by their namespaces: ``tags`` has the prefix or
-    postfix of those where it differs, ``names`` the name. ``facts`` are the nodes of the node sets.
-    ``read`` are the files that were read
-    for descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to
-    bridge; ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
-    ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
-    robots whose simulator gets another file, ``apart`` the domains of robots that are not in one,
-    ``models`` what each robot's model is spawned as, if not as the robot is called, ``placed`` the
-    robots whose files have a node that sends the transform which their drive sends, too, or that
-    transform on another topic."""
+    """A fleet's remap table, the contents of each description, and the nodes' transforms.
+
+    Robots are called by their namespaces: ``tags`` has the prefix or postfix where it differs,
+    ``names`` the name. ``facts`` are the nodes of the node sets, ``read`` the files of
+    descriptions, ``gaps`` what is open, ``bridged`` what a ros_gz_bridge has to bridge.
+    ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
+    ``use_sim_time`` by robot, ``described`` the descriptions if the simulator gets another file,
+    ``apart`` the domains, ``models`` the models' names if they differ. ``placed`` are robots
+    with a node that sends the drive's transform, too, or on another topic."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -76,7 +75,7 @@ class Fleet(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """The words that stand for robots in texts, each with the name of its robot."""
+        """The names, prefixes and postfixes of robots, each with the robot's name."""
         return words_of({self.name(it): (it, self.tags.get(it, it)) for it in self.inventories})
 
     def name(self, robot: str) -> str:
@@ -93,10 +92,8 @@ class Fleet(NamedTuple):
 def facts_of(
     node_sets: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes that a robot with these node sets runs in a release, each once. Raises
-    UsageError for an unknown node set, and for one that the release lacks. Every robot runs
-    robot_state_publisher: one of its node sets has it, or it is added. It is left out for the node
-    set ``no_robot_state_publisher``."""
+    """Return the nodes of node sets, each once, and robot_state_publisher; raises UsageError."""
+    # None is added for the node set ``no_robot_state_publisher``.
     known = known_nodes(nodes, release, nodl)
     library = known.library
     runs = {name: list(nodes_of(known, name)) for name in node_sets}
@@ -234,8 +231,7 @@ def planned(fleet: Fleet) -> System:
 
 
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:
-    """Yield the clock of each node of a robot that is started by itself, and the prefix that adds the
-    robot's name to the frames of its description."""
+    """Yield the clock of a robot's own nodes, and the prefix for the frames of its description."""
     clocks = dict(fleet.clocks)
     for it in merged(fleet.table.runs):
         given: dict[str, object] = {}

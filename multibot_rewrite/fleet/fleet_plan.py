@@ -21,7 +21,6 @@ from multibot_rewrite.fleet.launch.launched_files import (
 from multibot_rewrite.fleet.launch.launched_simulator import with_launched_world
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
-from multibot_rewrite.fleet.robots.joined_robots import with_joined
 from multibot_rewrite.fleet.robots.rewritten_robots import (
     Jobs,
     RewrittenRobot,
@@ -46,8 +45,9 @@ from multibot_rewrite.planning.plan import words_of
 
 
 class FleetPlan(NamedTuple):
-    """A fleet file, its rewritten robots, and the fleet of all of them; ``jobs`` are the
-    descriptions as they were read, ``evidence`` is what the robots' own files say of their nodes."""
+    """A fleet file, its rewritten robots and their fleet; ``jobs`` are the descriptions as read.
+
+    ``evidence`` is what the robots' own files say of their nodes."""
 
     file: FleetFile
     robots: tuple[RewrittenRobot, ...]
@@ -66,14 +66,14 @@ class FleetPlan(NamedTuple):
 
     @property
     def of_rewrites(self) -> list[Finding]:
-        """What the rewrites of the robots say, but for what the fleet says itself at the line."""
+        """The findings of the rewrites, without those that the fleet reports at the same line."""
         told = {(it.code, it.file, it.line) for it in self.fleet.table.problems}
         every = (it for robot in self.robots for it in robot.findings)
         return [it for it in every if (it.code, it.file, it.line) not in told]
 
     @property
     def words(self) -> dict[str, str]:
-        """Return the words that stand for robots in texts, each with the name of its robot."""
+        """The names, prefixes and postfixes of robots, each with the robot's name."""
         specs = (it.spec for it in self.robots)
         return words_of({it.name: (it.namespace, it.tag, it.model) for it in specs})
 
@@ -88,8 +88,12 @@ def make_plan(
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown node
     set."""
-    file, joined = with_joined(file, trust)
-    file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
+    joined: Mapping[str, Sequence[Finding]] = {}
+    if any(it.parts for it in file.robots):
+        from multibot_rewrite.fleet.robots.joined_robots import with_joined  # few are joined
+
+        file, joined = with_joined(file, trust)
+    file, notes = with_launched_files(_with_trust(with_shape(file)) if trust else with_shape(file))
     file = with_launched_world(with_one_map(with_bridge_namespaces(file)))
     with gc_paused():
         naming = make_naming(**file.policy)
@@ -106,7 +110,7 @@ def make_plan(
         ]
         file = file._replace(robots=tuple(it.spec for it in robots))
         evidence, maybe = _evidence(file, robots, notes)
-        fleet = _fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
+        fleet = _joined_fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
         told = ((it.spec.namespace, it.spec.use_sim_time) for it in robots)
         clocks = tuple((name, clock) for name, clock in told if clock is not None)
         models = {it.spec.namespace: it.spec.model for it in robots}
@@ -121,8 +125,7 @@ def make_plan(
 def _evidence(
     file: FleetFile, robots: Sequence[RewrittenRobot], notes: Mapping[str, Sequence[Finding]]
 ) -> tuple[dict[NodeSources, RobotEvidence], frozenset[str]]:
-    """Return what the files say of the nodes of each kind of robot, and the namespaces of robots
-    that may be real, which is reported once."""
+    """Return what files say of the nodes of each kind of robot, and namespaces that may be real."""
     specs = {node_sources(it): it for it in reversed(file.robots)}
     first = {node_sources(it.spec): it for it in reversed(robots)}
     found = {
@@ -139,7 +142,7 @@ def _evidence(
     return found, frozenset(it.spec.namespace for it in real)
 
 
-def _trusted(file: FleetFile) -> FleetFile:
+def _with_trust(file: FleetFile) -> FleetFile:
     robots = (
         it._replace(launch=tuple(order._replace(trusted=True) for order in it.launch))
         for it in file.robots
@@ -147,7 +150,7 @@ def _trusted(file: FleetFile) -> FleetFile:
     return file._replace(robots=tuple(robots))
 
 
-def _fleet(
+def _joined_fleet(
     file: FleetFile,
     robots: Sequence[RewrittenRobot],
     naming: Naming,

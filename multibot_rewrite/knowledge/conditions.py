@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Conditions under which a node, an endpoint, a transform or a claim is there, as entries write them.
-``README.md`` has how they are written.
-"""
+"""The conditions of nodes, endpoints, transforms and claims; ``README.md`` has the grammar."""
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
@@ -23,10 +21,10 @@ KINDS = {kind: what for kind, what, _ in _ROWS if what}
 # What is open -> as people read it. What is open may be there: no rule needs it, and it needs nobody.
 # The launch file of a fleet starts such a node only where a parameter file declares it; CHOSEN is a
 # word of nodes alone.
-OPEN = {it.removeprefix("open: "): said for it, _, said in _ROWS if it.startswith("open: ")}
+OPEN = {it.removeprefix("open: "): text for it, _, text in _ROWS if it.startswith("open: ")}
 AND, OR, ALSO = " and ", " or ", "|"
 # A kind, or what is asked of a parameter -> how people read it.
-_SAID = {kind: said for kind, _, said in _ROWS if said}
+_SAID = {kind: text for kind, _, text in _ROWS if text}
 _KIND = lazy_compile(r"(?P<kind>[a-z]+): (?P<words>\S.*)")
 _TERM = lazy_compile(
     r"(?P<parameter>[^\s=!]+)"
@@ -35,8 +33,7 @@ _TERM = lazy_compile(
 
 
 class Condition(NamedTuple):
-    """One term: ``how`` is ``=``, ``!=``, ``has``, ``lacks``, ``names``, ``set`` or ``unset`` for a
-    parameter, and ``:`` for what no parameter says, whose kind is the ``parameter``."""
+    """One term: ``how`` is =, !=, has, lacks, names, set or unset; ``:`` for what no parameter says."""
 
     parameter: str
     how: str
@@ -45,23 +42,22 @@ class Condition(NamedTuple):
 
 @lru_cache(maxsize=2048)
 def parse_condition(text: str) -> tuple[tuple[Condition, ...], ...]:
-    """Return the alternatives, each with the terms that must all hold; none for an empty text.
-    Raises UsageError for a text that is no condition."""
-    return tuple(tuple(map(_condition_of, it.split(AND))) for it in text.split(OR)) if text else ()
+    """Return the alternatives (none for an empty text), each with all its terms; raises UsageError."""
+    return tuple(tuple(map(_parse_term, it.split(AND))) for it in text.split(OR)) if text else ()
 
 
 def joined(text: str, other: str) -> str:
-    """Return both conditions as one."""
+    """Return the condition that holds where both hold."""
     return OR.join(f"{it}{AND}{other}" for it in text.split(OR)) if text else other
 
 
-def said(text: str) -> str:
+def readable(text: str) -> str:
     """Return the condition as people read it."""
     return OR.join(AND.join(map(_readable_term, it.split(AND))) for it in text.split(OR))
 
 
 @lru_cache(maxsize=4096)  # so many facts, so few conditions
-def of_release(text: str, release: str) -> str | None:
+def condition_in_release(text: str, release: str) -> str | None:
     """Return the condition without its releases; None if it never holds in this one."""
 
     def decide(it: Condition) -> bool | None:
@@ -71,18 +67,17 @@ def of_release(text: str, release: str) -> str | None:
 
 
 def settled(text: str, decide: Callable[[Condition], bool | None]) -> str | None:
-    """Return the condition without the terms that ``decide`` knows; None if it never holds. If one
-    alternative holds, it is empty."""
+    """Return what ``decide`` leaves open: empty if the condition holds, None if it never holds."""
     left = []
     for terms in (it.split(AND) for it in text.split(OR)) if text else ():
-        known = {it: decide(_condition_of(it)) for it in terms}
+        known = {it: decide(_parse_term(it)) for it in terms}
         if False not in known.values():
             left.append(AND.join(it for it, is_so in known.items() if is_so is None))
     return "" if "" in left or not text else OR.join(left) or None
 
 
 def words_in(text: str, kind: str) -> Iterator[str]:
-    """Yield the words of all terms of a kind."""
+    """Yield the values of all terms of a kind."""
     for terms in parse_condition(text):
         yield from (
             word for it in terms if (it.how, it.parameter) == (":", kind) for word in it.values
@@ -93,7 +88,7 @@ def _readable_term(term: str) -> str:
     """Return a term as people read it; another reason, such as a file of parameters, as it is."""
     if _TERM.fullmatch(term) is None and term.partition(": ")[0] not in KINDS:
         return term
-    it = _condition_of(term)
+    it = _parse_term(term)
     values = " or ".join(it.values)
     if (it.how, it.parameter) == (":", OPEN_KIND):
         return OPEN[values]
@@ -102,14 +97,14 @@ def _readable_term(term: str) -> str:
     return f"{it.parameter.replace(ALSO, ' or ')} {_SAID.get(it.how, it.how)} {values}".rstrip()
 
 
-def _condition_of(text: str) -> Condition:
+def _parse_term(text: str) -> Condition:
     kind = _KIND.fullmatch(text.strip())
     if kind is not None:
         if kind["kind"] not in KINDS:
             near = did_you_mean_one_of(kind["kind"], KINDS)
             known = f"{near}{near and ' '}known: {', '.join(KINDS)}"
             raise UsageError(f"{text!r} is of no kind that is known; {known}")
-        words = _terms(kind["words"])
+        words = _split_values(kind["words"])
         if kind["kind"] == OPEN_KIND and (len(words) > 1 or words[0] not in OPEN):
             raise UsageError(f"open: {ALSO.join(words)!r} is none of {', '.join(OPEN)}")
         return Condition(kind["kind"], ":", words)
@@ -119,10 +114,12 @@ def _condition_of(text: str) -> Condition:
         raise UsageError(f"{text!r} is no condition; {hint}")
     if found["state"]:
         return Condition(found["parameter"], found["state"], ())
-    return Condition(found["parameter"], found["how"] or "=", _terms(found["value"] or "true"))
+    return Condition(
+        found["parameter"], found["how"] or "=", _split_values(found["value"] or "true")
+    )
 
 
-def _terms(text: str) -> tuple[str, ...]:
+def _split_values(text: str) -> tuple[str, ...]:
     return tuple(it.strip() for it in text.split(ALSO))
 
 
@@ -137,7 +134,7 @@ def chosen_type(types: Iterable[tuple[str, str]], value_of: Values) -> str:
 
 
 def verdict(text: str, value_of: Values) -> bool | None:
-    """Return whether a condition holds with these parameters; None if they do not tell."""
+    """Return whether a condition holds with these parameters; None if they leave it open."""
     found = []
     for terms in parse_condition(text):
         each = [_is_true(it, value_of) for it in terms]
@@ -146,6 +143,7 @@ def verdict(text: str, value_of: Values) -> bool | None:
 
 
 def _is_true(it: Condition, value_of: Values) -> bool | None:
+    """Return whether a term holds with these parameters; None if they leave it open."""
     # A word in <> that nothing was put in place of is no parameter; files and the command line are not
     # at hand here.
     if "<" in it.parameter or it.parameter.startswith("-") or it.how == "names":
@@ -167,7 +165,7 @@ def _is_true(it: Condition, value_of: Values) -> bool | None:
 
 
 def _is_so(it: Condition, value_of: Values) -> bool | None:
-    """Return whether a term holds that is about no parameter; None if the values do not tell."""
+    """Return whether a term about no parameter holds; None if the values leave it open."""
     if it.parameter == "run":
         simulated = value_of("use_sim_time")
         return simulated == (it.values == ("simulated",)) if isinstance(simulated, bool) else None
@@ -181,7 +179,7 @@ def _is_so(it: Condition, value_of: Values) -> bool | None:
 
 
 def _spellings(given: object) -> set[str]:
-    """Return the words a value may be written with; none for a parameter that is not set."""
+    """Return the texts a value may be written with; none for a parameter that is not set."""
     if given is None:
         return set()
     word = word_of(given)
@@ -189,5 +187,5 @@ def _spellings(given: object) -> set[str]:
 
 
 def word_of(value: object) -> str:
-    """Return a value as a YAML file has it."""
+    """Return a parameter's value as the text that a YAML file has for it."""
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters that packages and plugins of Nav2 declare, as ``declared.schema`` has them, and what
-they demand of the values, in ``demanded.schema``; the classes that pluginlib finds, in
-``plugin_classes.schema``.
+"""What packages and plugins of Nav2 declare, as tables: one in each ``.schema`` file.
 
-The first one is made by ``python -m tools.interfaces.declared_table``; its first lines have the
-grammar.
-"""
+``declared.schema`` has the parameters, ``demanded.schema`` what they demand of the values,
+``plugin_classes.schema`` the classes that pluginlib finds. The first one is made by ``python -m
+tools.interfaces.declared_table``; its first lines have the grammar."""
 
 import os
 import re
@@ -28,8 +26,7 @@ _BETWEEN_CHECKS = re.compile(r"(?<=\))\s(?=[\w:]+\()")
 
 
 class Declared(NamedTuple):
-    """A parameter as its package declares it: ``type`` is empty where it is not known, ``bounds`` are
-    checks of generate_parameter_library, for those found there."""
+    """A parameter as its package declares it; ``bounds`` are checks of generate_parameter_library."""
 
     path: str
     type: str
@@ -39,21 +36,21 @@ class Declared(NamedTuple):
     source: str
 
     def has_name(self, name: str) -> bool:
-        """Return whether it is a name of the path, something in place of each word in brackets."""
+        """Return whether a name matches the path, with any text for each word in brackets."""
         if "<" not in self.path:
             return name == self.path
         # A pattern takes longer to compile than most paths to refuse.
-        one = len(_pieces(self.path)) == 2
+        one = len(_fixed_parts(self.path)) == 2
         return _may_be(self.path, name) if one else _fillings(self.path, name) is not None
 
     @property
     def checks(self) -> tuple[tuple[str, str], ...]:
-        """Each of its checks with its arguments."""
+        """The names of its checks, each with the text of its arguments."""
         return checks_in(self.bounds)
 
 
 def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
-    """Return each check in a text with its arguments."""
+    """Return the name of each check in a text, with the text of its arguments."""
     if ")" not in bounds:
         return ()
     checks = (it.partition("(") for it in _BETWEEN_CHECKS.split(bounds) if it.endswith(")"))
@@ -61,23 +58,23 @@ def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
 
 
 @lru_cache(maxsize=8192)
-def _pieces(path: str) -> list[str]:
+def _fixed_parts(path: str) -> list[str]:
+    """Return the parts of a path between its words in brackets."""
     return _WILD.split(path)
 
 
 def _may_be(path: str, name: str) -> bool:
-    """Return whether a name begins and ends as a path with words in brackets."""
-    pieces = _pieces(path)
+    """Return whether a name begins and ends as a path with words in brackets does."""
+    pieces = _fixed_parts(path)
     head, tail = pieces[0], pieces[-1]
     return name.startswith(head) and name.endswith(tail) and len(head) + len(tail) < len(name)
 
 
 def _fillings(path: str, name: str) -> list[str] | None:
-    """Return what is in a name for each word in brackets of a path, the first as long as it can be;
-    None for a name that is not of the path."""
+    """Return what a name has for each word in brackets of a path, the first longest; or None."""
     if not _may_be(path, name):
         return None
-    first, *middle, last = _pieces(path)
+    first, *middle, last = _fixed_parts(path)
     end, found = len(name) - len(last), []
     # From the end on, each piece where it comes last, with a character at least behind it.
     for piece in reversed(middle):
@@ -92,24 +89,24 @@ def _fillings(path: str, name: str) -> list[str] | None:
 @lru_cache(maxsize=512)
 def declared_by(owner: str) -> tuple[Declared, ...]:
     """Return what a package or the class of a plugin declares and demands; empty for an unknown one."""
-    every = _rows(_sections("declared.schema").get(owner, ""))
+    every = _parameters_of(_sections("declared.schema").get(owner, ""))
     declared = [it for it in every if says_something(it.path)]
-    demanded = _rows(_sections("demanded.schema").get(owner, ""))
+    demanded = _parameters_of(_sections("demanded.schema").get(owner, ""))
     return (*declared, *(it._replace(how=DEMANDED) for it in demanded))
 
 
 def is_known(owner: str) -> bool:
-    """Return whether there is a section of that name."""
+    """Return whether the parameters of a package or plugin class are known."""
     return owner in _sections("declared.schema")
 
 
 def stands_for(path: str, name: str) -> dict[str, str]:
-    """Return what the words in brackets of a path are in a name of that path: ``<id>`` -> ``odom0``."""
+    """Return by each word in brackets what a name of the path has there: ``<id>`` -> ``odom0``."""
     return dict(zip(_WILD.findall(path), _fillings(path, name) or (), strict=False))
 
 
 def says_something(path: str) -> bool:
-    """Return whether a path has a word of its own."""
+    """Return whether a path has more than words in brackets, which match any name."""
     return _EVERY.fullmatch(path) is None
 
 
@@ -120,7 +117,7 @@ def _sections(name: str) -> Mapping[str, str]:
     return {part[: part.index("]")]: part for part in parts}
 
 
-def _rows(section: str) -> Iterator[Declared]:
+def _parameters_of(section: str) -> Iterator[Declared]:
     if not section:
         return
     head, *lines = section.splitlines()
@@ -159,19 +156,20 @@ class Base(NamedTuple):
 
 @cache
 def plugin_bases() -> Mapping[str, Base]:
-    """Return every base by its name."""
+    """Return the plugin classes known for each base class."""
     _, *parts = own_text(__file__, "plugin_classes.schema").split("\n[")
-    return {part[: part.index("]")]: _base(part) for part in parts}
+    return {part[: part.index("]")]: _base_of(part) for part in parts}
 
 
-def _base(section: str) -> Base:
+def _base_of(section: str) -> Base:
     rows = [line.split() for line in section.splitlines()[1:] if line]
     older = {old: new for old, sign, new, *_ in rows if sign == _NOW}
     ended = frozenset(it[0] for it in rows if it[1] == _NOW and _ENDED in it[3])
-    return Base({name: _releases(word) for name, word, *_ in rows if word != _NOW}, older, ended)
+    return Base({name: _releases_of(word) for name, word, *_ in rows if word != _NOW}, older, ended)
 
 
-def _releases(word: str) -> str:
+def _releases_of(word: str) -> str:
+    """Return the release words in a column; empty for another text."""
     return word.removeprefix(RELEASES) if word.startswith(RELEASES) else ""
 
 

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Entries of nodes -> what is known of their endpoints, frames, transforms and claims, and their
-parameters: which of them hold names, of what kind, and their defaults. Names and types are checked
-where they are written."""
+"""Read the entries of nodes: endpoints, frames, transforms, claims and parameters, all checked."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
 from multibot_rewrite.knowledge.conditions import CHOSEN, OPEN_KIND, words_in
 from multibot_rewrite.knowledge.records import (
@@ -35,7 +34,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     table,
     table_of,
     text_and_words,
-    unknown,
     variants,
     word,
     word_of,
@@ -84,7 +82,7 @@ def read_parameters(
                 wrong(item, f"parameter {path!r} has an empty segment; {hint}")
             if segment.startswith("<"):
                 one_of(item, "segment", segment[1:-1], SEGMENTS)
-        forms = [_param(path, it, absolute) for it in variants(item)]
+        forms = [_read_param(path, it, absolute) for it in variants(item)]
         check_apart(item, f"parameter {path!r}", [it.releases for it in forms])
         given += forms
     said = {it.path for it in given}
@@ -109,7 +107,7 @@ def has_default(param: Param) -> bool:
     return bool(param.default or param.kind in PREFIX_KINDS) and "<" not in param.path
 
 
-def _param(path: str, item: YamlItem, absolute: str) -> Param:
+def _read_param(path: str, item: YamlItem, absolute: str) -> Param:
     if isinstance(item.value, str):
         kind = one_of(item, "kind", item.value, KINDS)
         return Param(path, kind, absolute=absolute if kind == "topic" else "")
@@ -132,7 +130,7 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
 
 
 def read_guesses(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield kinds with the last words of paths that suggest them."""
+    """Yield kinds of parameters, with the last words of paths that suggest them."""
     given = table_of(keys, "guesses")
     for kind, item in given.items():
         yield one_of(item, "kind", kind, KINDS), words_of(given, kind)
@@ -202,8 +200,7 @@ def _frames(keys: Mapping[str, YamlItem], params: Iterable[Param]) -> Iterator[F
 def _sends(
     keys: Mapping[str, YamlItem], frames: Iterable[FrameParameter]
 ) -> Iterator[SentTransform]:
-    """Yield the transforms that a node publishes, as the parameters that hold their frames, or what
-    its code makes of parameters."""
+    """Yield the transforms that a node publishes, by the parameters that hold or make their frames."""
     known = {frame.parameter: frame.parameter for frame in frames}
     each = (
         (parent, it) for parent, item in table_of(keys, "sends").items() for it in variants(item)
@@ -237,8 +234,7 @@ def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
 def taken_over(
     keys: Mapping[str, YamlItem], parts: Mapping[str, tuple[Endpoint, ...]]
 ) -> Iterator[Endpoint]:
-    """Yield the endpoints of the parts that an entry names under ``with``, and those of the life
-    cycle in the releases of ``unmanaged``."""
+    """Yield the endpoints of the parts under ``with``, and of the life cycle if ``unmanaged``."""
     for entry in entries_of(keys, "with"):
         yield from known_word(entry, "part", parts)
     if "unmanaged" in keys:
@@ -247,7 +243,7 @@ def taken_over(
 
 
 def check_name(item: YamlItem, name: str) -> None:
-    """Raise UsageError where a node cannot be called so."""
+    """Raise UsageError for a name that no node can have."""
     for token in name.split("/"):
         fault = check_node_name(token)
         if fault:
@@ -267,14 +263,16 @@ def endpoints_of(keys: Mapping[str, YamlItem]) -> Iterator[Endpoint]:
     """Yield the endpoints of a node or part; raises UsageError at the first mistake."""
     for role in ROLES:
         for name, item in table_of(keys, role).items():
-            found = [_endpoint(role, name, it) for it in variants(item)]
+            found = [_read_endpoint(role, name, it) for it in variants(item)]
             check_apart(item, f"{role} {name!r}", [it.releases for it in found])
             yield from found
 
 
-def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
+def _read_endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
     if isinstance(item.value, str):
-        return checked_endpoint(item, Endpoint(_kind(role, item.value), role, name, item.value))
+        return checked_endpoint(
+            item, Endpoint(_kind_of_end(role, item.value), role, name, item.value)
+        )
     keys = table(item, f"{role} {name!r}", ENDPOINT_KEYS)
     also = words_of(keys, "also")
     every, types = (word_of(keys, "type"), *also), []
@@ -284,7 +282,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
             wrong(type_, f"{type_.value!r} is neither the type nor in also ({', '.join(every)})")
         types.append((condition, str(type_.value)))
     endpoint = Endpoint(
-        _kind(role, word_of(keys, "type")),
+        _kind_of_end(role, word_of(keys, "type")),
         role,
         name,
         **{key: word_of(keys, key) for key in keys.keys() & set(ENDPOINT_WORDS)},
@@ -303,7 +301,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
     return checked_endpoint(item, endpoint)
 
 
-def _kind(role: str, type_: str) -> str:
+def _kind_of_end(role: str, type_: str) -> str:
     if role in (PUBLISHES, SUBSCRIBES):
         return TOPIC
     return ACTION if "/action/" in type_ else SERVICE

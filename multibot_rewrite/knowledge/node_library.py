@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.base.releases import share_release
 from multibot_rewrite.knowledge.node_entries import (
     GRAPH_KEYS,
@@ -32,7 +33,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     releases_of,
     table,
     table_of,
-    unknown,
     word,
     word_of,
     words_of,
@@ -54,10 +54,10 @@ NO_GUESSES: Mapping[str, tuple[str, ...]] = {}
 
 
 class NodeSet(NamedTuple):
-    """Nodes that are started together; ``include`` are node sets that it contains, ``releases`` the
-    words for the releases that have it.
+    """Nodes that are started together.
 
-    ``container`` is the node among them that all others are loaded into as components, if any.
+    ``include`` are node sets that it contains, ``releases`` the words for the releases that have
+    it. ``container`` is the node among them that all others are loaded into as components, if any.
     ``remaps`` are a node of it or of an included node set, a name of the node, and what that is
     remapped to here."""
 
@@ -88,9 +88,10 @@ class NodeLibrary(NamedTuple):
 
 
 def nodes_of_set(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
-    """Return the nodes of a node set, each once; nodes of included node sets come first. The name
-    of a node is a node set of that node alone. Raises UsageError for other names, and for what the
-    library's release lacks."""
+    """Return the nodes of a node set, each once, those of included node sets first.
+
+    A known node is a node set of that node alone. Raises UsageError for any other name, and for
+    what the library's release lacks."""
     if name in library.elsewhere:
         hint = "name one of these releases, or leave the node set out"
         has = f"it is in {library.elsewhere[name]}"
@@ -136,9 +137,10 @@ def _in_set(node: NodeFacts, node_set: NodeSet) -> NodeFacts:
 
 
 def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> NodeLibrary:
-    """Return ``library`` with what a YAML text adds or changes. An entry replaces what was known of
-    a node's endpoints, and adds to its parameters. ``own`` means that the text is of this
-    package."""
+    """Return the library with what a YAML text adds or changes; raises UsageError with the line.
+
+    An entry replaces what was known of a node's endpoints, and adds to its parameters. ``own``
+    means that the text is of this package."""
     text = re.sub(r"(?m)^stacks:", "node_sets:", text)  # as files of 0.2.0 call them
     top = table(read_yaml_with_lines(text, file, own), "the file", FILE_KEYS)
     new = {key: table(top[key], key) for key in ("parts", "nodes", "node_sets") if key in top}
@@ -172,7 +174,7 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
         sent=library.sent | frozenset(words_of(top, "sent")),
     )
     node_sets = {
-        name: _node_set(item, grown, known) for name, item in new.get("node_sets", {}).items()
+        name: _read_node_set(item, grown, known) for name, item in new.get("node_sets", {}).items()
     }
     whole = grown._replace(node_sets={**library.node_sets, **node_sets})
     for name, item in new.get("node_sets", {}).items():
@@ -191,20 +193,20 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
 
 
 def _check_rule(item: YamlItem, given: str, ends: Iterable[Endpoint]) -> None:
-    """Raise an error for a name that no end has, or that a rule may not give it."""
+    """Raise UsageError for a rule of a name that no endpoint has, or to one that is not allowed."""
     found = next((it for it in ends if it.name == given), None)
     if found is None:
         wrong(item, unknown("name", given, {it.name for it in ends}))
     checked_endpoint(item, found._replace(remapped=word(item, f"remaps {given}")))
 
 
-def _node_set(item: YamlItem, library: NodeLibrary, node_sets: Iterable[str]) -> NodeSet:
+def _read_node_set(item: YamlItem, library: NodeLibrary, node_sets: Iterable[str]) -> NodeSet:
     keys = table(item, "a node set", NODE_SET_KEYS)
     known = {name: name for name in node_sets}
     return NodeSet(
         word_of(keys, "about"),
         tuple(known_word(entry, "node set", known) for entry in entries_of(keys, "include")),
-        tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
+        tuple(_read_node_of_set(entry, library) for entry in entries_of(keys, "nodes")),
         releases_of(keys),
         word_of(keys, "container"),
         tuple(
@@ -215,7 +217,7 @@ def _node_set(item: YamlItem, library: NodeLibrary, node_sets: Iterable[str]) ->
     )
 
 
-def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
+def _read_node_of_set(item: YamlItem, library: NodeLibrary) -> NodeFacts:
     """Return a node with the changes that a node set makes to it."""
     if isinstance(item.value, str):
         return known_word(item, "node", library.nodes)
@@ -276,7 +278,7 @@ def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tup
 
 
 def _has(endpoint: Endpoint, given: str) -> bool:
-    """Return whether this is its name, or a run-time part of its name."""
+    """Return whether a name is that of the endpoint, or a part of it that is made at run time."""
     return given in endpoint.name if given.startswith("<") else given == endpoint.name
 
 

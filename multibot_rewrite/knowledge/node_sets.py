@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known nodes and node sets of a release, from ``nodes/*.yaml``, ``node_sets.yaml`` and files of
-users: what a release lacks is left out, what came late is conditional."""
+"""The known nodes and node sets of a release, from this package's YAML files and those of users."""
 
 from __future__ import annotations
 
@@ -12,7 +11,7 @@ from multibot_rewrite.base.bounded import read_text
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES, has_release, releases_with, since_version
-from multibot_rewrite.knowledge.conditions import VERSION, joined, of_release
+from multibot_rewrite.knowledge.conditions import VERSION, condition_in_release, joined
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, nodes_of_set
 from multibot_rewrite.knowledge.packages import older
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
@@ -29,8 +28,7 @@ def load_nodes(release: str) -> dict[str, NodeFacts]:
 
 @lru_cache
 def load_node_set(name: str, release: str) -> tuple[NodeFacts, ...]:
-    """Return the nodes of a built-in node set, or a built-in node. Raises UsageError for an unknown
-    name, and for a node set that the release lacks."""
+    """Return the nodes of a built-in node set or node; raises UsageError if the release has none."""
     return nodes_of_set(built_in(release), name)
 
 
@@ -41,10 +39,10 @@ def built_in(release: str) -> NodeLibrary:
 
 
 def user_library(path: str, release: str) -> NodeLibrary:
-    """Return the built-in nodes and node sets and those of a file; ``nodes_of_set`` selects one. A
-    built-in node that the file changes is changed in the file's own node sets only. Raises
-    UsageError with file and line for errors in the file."""
-    return _extended_in_release(_text_of(path), path, release)
+    """Return the built-in library of a release with that of a file; raises UsageError with the line.
+
+    A built-in node that the file changes is changed in the file's own node sets only."""
+    return _extended_for_release(_text_of(path), path, release)
 
 
 def with_file(path: str) -> NodeLibrary:
@@ -54,7 +52,8 @@ def with_file(path: str) -> NodeLibrary:
 
 # A command asks for what the same file says many times.
 @lru_cache(maxsize=4)
-def _extended_in_release(text: str, path: str, release: str) -> NodeLibrary:
+def _extended_for_release(text: str, path: str, release: str) -> NodeLibrary:
+    """Return the nodes of a release, with those that the text of a file adds."""
     return in_release(_extended_library(text, path), release)
 
 
@@ -74,14 +73,14 @@ def _text_of(path: str) -> str:
 
 
 def is_apart(node: str, release: str) -> bool:
-    """Return whether a node keeps its name in every layout (``NodeFacts.apart``), by the built-in
-    nodes. What is in the namespace of such a node, as the helpers of costmaps, goes with it."""
+    """Return whether a node keeps its name in every layout, or is in the namespace of one that does."""
     above = node.rpartition("/")[0]
     known = apart_nodes(release)
-    return any(_ends_with(node, it) or _ends_with(above, it.rpartition("/")[0]) for it in known)
+    return any(_ends_in(node, it) or _ends_in(above, it.rpartition("/")[0]) for it in known)
 
 
-def _ends_with(node: str, with_: str) -> bool:
+def _ends_in(node: str, with_: str) -> bool:
+    """Return whether the last segments of a node's name are another name."""
     return bool(with_) and f"/{node}".endswith(f"/{with_}")
 
 
@@ -103,8 +102,7 @@ def every_release() -> NodeLibrary:
 
 
 def older_node(name: str, release: str, type_: str = "") -> str:
-    """Say that what was read of a known node is older than a release, as ``packages.older``; nothing of
-    a type that was not read of it: a bridge has the types of its file."""
+    """Return a note that a node was read in an older release; empty if not, or not with this type."""
     found = every_release().nodes.get(name) if name and release else None
     if found is None or (type_ and all(it.type != type_ for it in found.endpoints)):
         return ""
@@ -112,8 +110,7 @@ def older_node(name: str, release: str, type_: str = "") -> str:
 
 
 def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
-    """Return what of ``library`` is in ``release``. What came into the release with a later version
-    of its package has that as its condition, so an installed older version lacks nothing."""
+    """Return the library of a release; what a later version of a package brought is conditional."""
     # Nodes and node sets that the release lacks, and the releases that have them.
     elsewhere = {
         name: ", ".join(releases_with(node.releases))
@@ -124,13 +121,13 @@ def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
     for name, node_set in library.node_sets.items():
         if _has_set(library, name, release):
             include = (it for it in node_set.include if _has_set(library, it, release))
-            nodes = tuple(_nodes(node_set.nodes, release))
+            nodes = tuple(_nodes_in_release(node_set.nodes, release))
             node_sets[name] = node_set._replace(include=tuple(include), nodes=nodes)
         else:
             elsewhere[name] = ", ".join(it for it in RELEASES if _has_set(library, name, it))
     return library._replace(
-        parts={name: _endpoints(it, "", release) for name, it in library.parts.items()},
-        nodes={it.name: it for it in _nodes(library.nodes.values(), release)},
+        parts={name: _endpoints_in_release(it, "", release) for name, it in library.parts.items()},
+        nodes={it.name: it for it in _nodes_in_release(library.nodes.values(), release)},
         node_sets=node_sets,
         release=release,
         elsewhere=elsewhere,
@@ -138,7 +135,7 @@ def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
 
 
 def _has_set(library: NodeLibrary, name: str, release: str) -> bool:
-    """Return whether a node of the node set is in the release. A node set may have none in any."""
+    """Return whether the release has a node of the node set, or the node set has none in any."""
     node_set = library.node_sets[name]
     if not has_release(node_set.releases, release):
         return False
@@ -148,13 +145,13 @@ def _has_set(library: NodeLibrary, name: str, release: str) -> bool:
     return nodes or any(_has_set(library, it, release) for it in node_set.include)
 
 
-def _nodes(nodes: Iterable[NodeFacts], release: str) -> Iterator[NodeFacts]:
+def _nodes_in_release(nodes: Iterable[NodeFacts], release: str) -> Iterator[NodeFacts]:
     for node in nodes:
         if has_release(node.releases, release):
             frames = tuple(it for it in node.frames if has_release(it.releases, release))
             known = {it.parameter for it in frames}
             yield node._replace(
-                endpoints=_endpoints(node.endpoints, node.package, release),
+                endpoints=_endpoints_in_release(node.endpoints, node.package, release),
                 when=_condition(node.when, node.releases, node.package, release),
                 frames=frames,
                 sends=tuple(it for it in node.sends if known.issuperset(it[:2])),
@@ -162,20 +159,23 @@ def _nodes(nodes: Iterable[NodeFacts], release: str) -> Iterator[NodeFacts]:
             )
 
 
-def _endpoints(endpoints: Iterable[Endpoint], package: str, release: str) -> tuple[Endpoint, ...]:
-    there = ((it, of_release(it.when, release)) for it in endpoints)
+def _endpoints_in_release(
+    endpoints: Iterable[Endpoint], package: str, release: str
+) -> tuple[Endpoint, ...]:
+    there = ((it, condition_in_release(it.when, release)) for it in endpoints)
     return tuple(
-        _endpoint(it if when == it.when else it._replace(when=when), package, release)
+        _endpoint_in_release(it if when == it.when else it._replace(when=when), package, release)
         for it, when in there
         if when is not None and has_release(it.releases, release)
     )
 
 
-def _endpoint(it: Endpoint, package: str, release: str) -> Endpoint:
+def _endpoint_in_release(it: Endpoint, package: str, release: str) -> Endpoint:
+    """Return an endpoint with the condition, types and place that it has in a release."""
     if not (it.releases or it.above or it.types):
         return it
     above = it.above if it.above and has_release(it.above, release) else ""
-    types = ((of_release(condition, release), type_) for condition, type_ in it.types)
+    types = ((condition_in_release(condition, release), type_) for condition, type_ in it.types)
     return it._replace(
         when=_condition(it.when, it.releases, package, release),
         above=above,

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Packages of known nodes: the versions that each release has, and of what day the source is that was
-read of them, as ``packages.schema`` has it, which ``python -m tools.interfaces.versions`` makes."""
+"""Packages of known nodes: versions by release, from ``python -m tools.interfaces.versions``."""
 
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
@@ -13,8 +12,7 @@ COMMENT, NONE = "#", "-"
 
 
 class Versions(NamedTuple):
-    """The version of a package that a release came with, and the one that it has now; the commit that
-    was read of it, its version and its day. What is not known is empty."""
+    """The versions of a package that a release began with and has now, and the source that was read."""
 
     first: str = ""
     now: str = ""
@@ -32,7 +30,7 @@ class Package(NamedTuple):
 
 @cache
 def packages() -> Mapping[str, Package]:
-    """Return every package of the table."""
+    """Return known packages by name, each with its repository and versions."""
     found: dict[str, Package] = {}
     rows: dict[str, Versions] = {}
     for line in own_text(__file__, "packages.schema").splitlines():
@@ -47,18 +45,18 @@ def packages() -> Mapping[str, Package]:
 
 
 def number(version: str) -> tuple[int, ...]:
-    """Return a version in a form that can be compared."""
+    """Return a version as numbers that can be compared."""
     return tuple(int(it) for it in version.split(".") if it.isdecimal())
 
 
 @lru_cache(maxsize=1024)  # so many facts, so few words
 def by_version(words: str) -> str:
-    """Return release words where ``PACKAGE VERSION+`` stands for the releases with this version,
-    with it as a condition where they came with an earlier one."""
-    return ", ".join(it for term in words.split(",") for it in _terms(term.strip()))
+    """Return release words, ``PACKAGE VERSION+`` as its releases (a condition where it came later)."""
+    return ", ".join(it for term in words.split(",") for it in _terms_by_version(term.strip()))
 
 
-def _terms(term: str) -> Iterator[str]:
+def _terms_by_version(term: str) -> Iterator[str]:
+    """Yield the release words that one ``PACKAGE VERSION+`` stands for."""
     name, _, since = term.removesuffix("+").partition(" ")
     if name in RELEASES or not since or name not in packages():
         yield term
@@ -70,8 +68,7 @@ def _terms(term: str) -> Iterator[str]:
 
 
 def older(name: str, release: str) -> str:
-    """Return a note that a package was read in an earlier version, of an older release; empty if
-    that is not so or nothing is known."""
+    """Return a note that a package was read as an older release had it; empty if not or unknown."""
     it = versions_of(name).get(release, Versions())
     came = CAME.get(release, max(CAME.values()))
     if not it.date or it.date >= came or number(it.now)[:2] <= number(it.version)[:2]:

@@ -20,10 +20,10 @@ _INDEX = "<index>"
 
 
 class KnownNodes(NamedTuple):
-    """All known nodes; ``names`` and ``types`` lead to them. ``anywhere`` holds what is the same in
-    every node that has it, ``guesses`` last words of other paths (``guessing`` as one expression),
-    ``sent`` frames that nodes send.
-    """
+    """All known nodes; ``names`` and ``types`` lead to them.
+
+    ``anywhere`` is what is the same in every node that has it, ``guesses`` are last words of other
+    paths (``guessing`` as one expression), ``sent`` frames that nodes send."""
 
     nodes: Mapping[str, NodeParameters]
     names: Mapping[str, str]
@@ -37,13 +37,12 @@ class KnownNodes(NamedTuple):
 @lru_cache
 def built_in_nodes(release: str) -> KnownNodes:
     """Return the nodes that this package knows, with the defaults of a release."""
-    return _known(every_release(), release)
+    return _known_nodes(every_release(), release)
 
 
 def load_known_nodes(path: str, release: str) -> KnownNodes:
-    """Return the built-in nodes, and those that a user's file of nodes adds or changes. Raises
-    UsageError, with file and line, for whatever is wrong in it."""
-    return _known(with_file(path), release) if path else built_in_nodes(release)
+    """Return the built-in nodes with those of a user's file; raises UsageError with file and line."""
+    return _known_nodes(with_file(path), release) if path else built_in_nodes(release)
 
 
 def is_absolute(param: Param, release: str) -> bool:
@@ -70,8 +69,8 @@ def guess(known: KnownNodes, path: str) -> str:
     return (found.lastgroup or "") if found else ""
 
 
-def _known(library: NodeLibrary, release: str) -> KnownNodes:
-    nodes = {it.name: _node(it, release) for it in library.parameters.values()}
+def _known_nodes(library: NodeLibrary, release: str) -> KnownNodes:
+    nodes = {it.name: _node_in_release(it, release) for it in library.parameters.values()}
     facts = library.parameters.values()
     names = {alias: it.name for it in facts for alias in (*it.aliases, it.name)}
     types = {type_: it.name for it in facts for type_ in it.types}
@@ -82,16 +81,15 @@ def _known(library: NodeLibrary, release: str) -> KnownNodes:
         nodes,
         names | {name: name for name in nodes},
         types,
-        _tree(_anywhere(nodes.values(), guessing)),
+        _tree_of(_anywhere(nodes.values(), guessing)),
         library.guesses,
         guessing,
         library.sent,
     )
 
 
-def _node(facts: NodeParameters, release: str) -> NodeParameters:
-    """Return a node in a release. What this lacks is kept as the last release with it had it: a
-    file that sets it is for such a release."""
+def _node_in_release(facts: NodeParameters, release: str) -> NodeParameters:
+    """Return a node in a release; what that lacks is as the last release had it, for older files."""
     params: dict[str, Param] = {}
     for it in facts.forms:
         if it.path not in params or not has_release(params[it.path].releases, release):
@@ -99,12 +97,11 @@ def _node(facts: NodeParameters, release: str) -> NodeParameters:
     here = has_release(facts.releases, release)
     there = [it for it in params.values() if here and has_release(it.releases, release)]
     defaults = tuple(it for it in there if has_default(it))
-    return facts._replace(params=params, tree=_tree(params.values()), defaults=defaults)
+    return facts._replace(params=params, tree=_tree_of(params.values()), defaults=defaults)
 
 
 def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Iterator[Param]:
-    """Yield parameters that likely mean the same in an unknown node: several nodes have them with
-    one meaning, or their name suggests it."""
+    """Yield parameters that mean the same in several nodes, or whose name suggests their meaning."""
     every = (param for node in nodes for param in node.params.values())
     plain = (it for it in every if "*" not in it.path and "<" not in it.path.replace(_INDEX, ""))
     found = lists_by_key((it.path, it) for it in plain)
@@ -120,7 +117,8 @@ def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Ite
             yield params[0]._replace(default="", absolute="")
 
 
-def _tree(params: Iterable[Param]) -> Branch:
+def _tree_of(params: Iterable[Param]) -> Branch:
+    """Return the parameters as a tree by the segments of their paths."""
     root = Branch({}, {}, {}, [])
     for param in params:
         branch = root

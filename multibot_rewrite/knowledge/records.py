@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.system.records import NO_ORIGIN, Origin
 
 MANAGER, MOVE_GROUP, TWIST_MUX = "controller_manager", "move_group", "twist_mux"
@@ -17,8 +18,9 @@ NO_TYPES: Mapping[str, str] = {}
 
 
 class Endpoint(NamedTuple):
-    """A topic, service or action in a node's code, before any remap rule: what its entry says of it
-    (``README.md``), the ``if`` as ``condition``.
+    """A topic, service or action in a node's code, before any remap rule.
+
+    It has the keys of its entry (``README.md``), the ``if`` as ``condition``.
 
     ``name`` is relative, absolute or private (``~/x``). ``remapped``: the table's rule must lead
     there, since only the first match counts. ``named_from`` is what its entry calls it, if a node
@@ -89,8 +91,7 @@ class Param(NamedTuple):
 
 
 class Branch(NamedTuple):
-    """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
-    segment is, if any word is allowed); ``params`` are those whose path ends here."""
+    """Parameters by the next segment of their paths; ``numbered`` are stems of names with digits."""
 
     exact: dict[str, "Branch"]
     numbered: dict[str, "Branch"]
@@ -103,12 +104,15 @@ NO_TREE = Branch({}, {}, {}, [])
 
 
 class NodeParameters(NamedTuple):
-    """A node in parameter files: ``forms`` of its parameters in all releases, ``types`` are controller
-    types, ``known_by`` parameters that identify the node if its section has another name. ``strips``
-    are the releases in which the node takes off a slash that a frame starts with, empty for none;
-    ``deprecated_types`` has those of types. ``declared_in`` are packages besides its own whose classes
-    declare parameters on it: plugins, helpers, libraries. Of a release are the ``params`` by path,
-    as a ``tree``, and those that hold one name by ``defaults``: all are empty in the library."""
+    """A node in parameter files.
+
+    ``forms`` are its parameters in all releases, ``types`` controller types, ``known_by``
+    parameters that identify the node if its section has another name. ``strips`` are the releases
+    in which the node takes off a slash that a frame starts with, empty for none;
+    ``deprecated_types`` has those of types. ``declared_in`` are packages besides its own whose
+    classes declare parameters on it: plugins, helpers, libraries. Of a release are the ``params``
+    by path, as a ``tree``, and those that hold one name by ``defaults``: all are empty in the
+    library."""
 
     name: str
     package: str
@@ -127,9 +131,10 @@ class NodeParameters(NamedTuple):
 
 
 class SentTransform(NamedTuple):
-    """A transform that a node publishes, as the parameters that hold its frames; ``condition`` as in
-    ``Endpoint``, ``static`` is true for one that holds for ever. A frame that its code makes of
-    parameters stands for one itself (``made_of``)."""
+    """A transform that a node publishes, as the parameters that hold its frames.
+
+    ``condition`` is as in ``Endpoint``, ``static`` is true for one that holds for ever. A frame
+    that its code makes of parameters stands for one itself (``made_of``)."""
 
     parent: str
     child: str
@@ -146,8 +151,10 @@ def made_of(text: str, values: Mapping[str, str]) -> str:
 
 
 class Claim(NamedTuple):
-    """Interfaces that a controller claims: ``kind`` is command or state, ``template`` a name with
-    parameters in <> (``evidence.hardware``); ``condition`` and ``releases`` as in ``Endpoint``."""
+    """Interfaces that a controller claims.
+
+    ``kind`` is command or state, ``template`` a name with parameters in <> (``evidence.hardware``),
+    ``condition`` and ``releases`` are as in ``Endpoint``."""
 
     kind: str
     template: str
@@ -163,8 +170,7 @@ class Untold(NamedTuple):
 
 
 class NodeFacts(NamedTuple):
-    """A known node: its default name, its package, its endpoints, and what else its entry says
-    (``README.md``).
+    """A known node: its default name, package, endpoints, and what else its entry (``README.md``) says.
 
     A name with slashes is a node in its own namespace below the robot's, such as a costmap. No rule
     reaches ``frames`` and ``fixed``. ``known`` is its name in its entry if it has another one.
@@ -210,7 +216,7 @@ class NodeFacts(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """Its name in its entry; raises nothing."""
+        """The name of its entry."""
         return self.known or self.name
 
     @property
@@ -221,3 +227,8 @@ class NodeFacts(NamedTuple):
 
 # What is known of a node that nobody knows.
 UNKNOWN = NodeFacts("", "", (), is_known=False)
+
+
+def names_its_process(kind: str, release: str) -> bool:
+    """Return whether a rule ``__node`` for this node renames its whole process (ros2_control#1684)."""
+    return kind == MANAGER and controller_way(release).process_wide

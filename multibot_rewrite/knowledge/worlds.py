@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The systems of gz-sim that a world needs, what they send, and plugins that drive joints, as
-``worlds.schema`` has them; and the simulators that load a robot's hardware.
+"""Tables of gz-sim: systems that a world needs, plugins that drive joints, simulators of hardware.
 
 Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy), the same of
 ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control;
@@ -17,6 +16,7 @@ _ROWS = own_rows(__file__, "worlds.schema")
 
 
 def _rows_of(kind: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield the library and the words of each row of a kind."""
     yield from ((library, words.split()) for library, what, words in _ROWS if what == kind)
 
 

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""YAML with the file and line of every value, for errors in data files; and what every fact may say
-besides itself: the releases that have it, and where that can be read."""
+"""YAML with the file and line of every value, for errors; and the keys that any fact may have."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias, TypeVar
 
 from multibot_rewrite.base.bounded import compose_own_yaml, compose_yaml
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.nearest import unknown
 
 if TYPE_CHECKING:
     import yaml
@@ -29,8 +28,7 @@ class YamlItem(NamedTuple):
 
 
 def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
-    """Return the one document of a YAML text; raises UsageError naming ``file`` and the line.
-    ``own`` says that it is of this package, so that it needs no limits."""
+    """Return the document of a YAML text, without limits for an own one; raises UsageError."""
     try:
         node = compose_own_yaml(text) if own else compose_yaml(text, file)
         return YamlItem(f"{file}:1", None) if node is None else _yaml_item(node, f"{file}:1", file)
@@ -42,20 +40,20 @@ def _yaml_item(node: "yaml.Node", where: str, file: str) -> YamlItem:
     if isinstance(node.value, str):
         if node.tag == "tag:yaml.org,2002:null":
             return YamlItem(where, None)
-        return YamlItem(where, _truth(node.value) if node.tag == _BOOLEAN else node.value)
+        return YamlItem(where, _is_true(node.value) if node.tag == _BOOLEAN else node.value)
     import yaml
 
     if isinstance(node, yaml.MappingNode):
-        return YamlItem(where, _mapping(node, file))
+        return YamlItem(where, _read_mapping(node, file))
     inner = (_yaml_item(it, f"{file}:{it.start_mark.line + 1}", file) for it in node.value)
     return YamlItem(where, tuple(inner))
 
 
-def _truth(word: str) -> bool:
+def _is_true(word: str) -> bool:
     return word.lower() in ("true", "yes", "on")
 
 
-def _mapping(node: "yaml.Node", file: str) -> dict[str, YamlItem]:
+def _read_mapping(node: "yaml.Node", file: str) -> dict[str, YamlItem]:
     found: dict[str, YamlItem] = {}
     for key, value in node.value:
         where = f"{file}:{key.start_mark.line + 1}"
@@ -73,7 +71,7 @@ def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str
     if item.value is None:
         return {}
     if not isinstance(item.value, Mapping):
-        wrong(item, f"{what} is {_shape(item)}; write keys and values")
+        wrong(item, f"{what} is {_type_in_words(item)}; write keys and values")
     for key in item.value if allowed and item.value.keys() - allowed else ():
         if key not in allowed:
             wrong(item.value[key], unknown("key", key, allowed))
@@ -81,9 +79,9 @@ def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str
 
 
 def word(item: YamlItem, what: str) -> str:
-    """Return a text; it may be empty."""
+    """Return the text of an item, which may be empty; raises UsageError for another value."""
     if not isinstance(item.value, str):
-        wrong(item, f"{what} is {_shape(item)}; write a text, in quotes if needed")
+        wrong(item, f"{what} is {_type_in_words(item)}; write a text, in quotes if needed")
     return item.value
 
 
@@ -102,7 +100,7 @@ def entries(item: YamlItem, what: str) -> tuple[YamlItem, ...]:
     if isinstance(item.value, str):
         return (item,)
     if not isinstance(item.value, tuple):
-        wrong(item, f"{what} is {_shape(item)}; write a list")
+        wrong(item, f"{what} is {_type_in_words(item)}; write a list")
     return item.value
 
 
@@ -122,12 +120,12 @@ def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> 
         return otherwise
     value = keys[key].value
     if not isinstance(value, bool):
-        wrong(keys[key], f"{key} is {_shape(keys[key])}; write true or false")
+        wrong(keys[key], f"{key} is {_type_in_words(keys[key])}; write true or false")
     return value
 
 
 def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
-    """Return what a word stands for; an unknown one is an error."""
+    """Return what ``known`` has for the text of an item; raises UsageError for another text."""
     name = word(item, what)
     if name not in known:
         wrong(item, unknown(what, name, known))
@@ -135,7 +133,7 @@ def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
 
 
 def one_of(item: YamlItem, what: str, value: str, allowed: Sequence[str]) -> str:
-    """Return the value, which has to be one of those allowed."""
+    """Return the value; raises UsageError for one that is not allowed."""
     if value not in allowed:
         wrong(item, unknown(what, value, allowed))
     return value
@@ -146,14 +144,7 @@ def wrong(item: YamlItem, message: str) -> NoReturn:
     raise UsageError(f"{item.where}: {message}")
 
 
-def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
-    """Return the message that ``name`` is unknown, with the nearest and the list of ``known``."""
-    known = sorted(known)
-    near = did_you_mean_one_of(name, [*known, *more])
-    return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
-
-
-def _shape(item: YamlItem) -> str:
+def _type_in_words(item: YamlItem) -> str:
     if isinstance(item.value, str):
         return f"the text {item.value!r}"
     if isinstance(item.value, bool):
@@ -195,12 +186,12 @@ def source_of(keys: Mapping[str, YamlItem]) -> tuple[str, ...]:
 
 
 def variants(item: YamlItem) -> tuple[YamlItem, ...]:
-    """Return a fact, or a list of what it is in one release and another, as a list."""
+    """Return the variants of a fact in different releases as a list, also a single one."""
     return item.value if isinstance(item.value, tuple) else (item,)
 
 
 def check_apart(item: YamlItem, what: str, words: Sequence[str]) -> None:
-    """Check that a fact has a variant, and no two of them hold in one release."""
+    """Raise UsageError unless a fact has variants, no two of which hold in one release."""
     if not words:
         wrong(item, f"{what} is an empty list; write what it is")
     for release in RELEASES if len(words) > 1 else ():

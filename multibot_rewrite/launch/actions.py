@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.outputs import spawn as spawning
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
     ROBOTS,
@@ -44,15 +44,13 @@ FROM_THE_FLEET = ("name", "namespace")
 
 
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
-    """Return an action that runs what ``make`` returns (an action or several) for every robot, each
-    robot in its own group.
+    """Return an action that runs the actions of ``make`` for every robot, each in its own group.
 
     ``robots`` are some robots' names, with commas, or robots in place of those of the file with their
     poses, as Nav2 writes them (``robot1={x: 1.0}; robot2={}``); ``action`` are options such as a
     condition.
 
-        each_robot(LaunchConfiguration("fleet"), lambda robot: [Node(..., **robot.node("amcl"))])
-    """
+        each_robot(LaunchConfiguration("fleet"), lambda robot: [Node(..., **robot.node("amcl"))])"""
 
     def groups(context: Context) -> list[Action]:
         names = listed(context, robots)
@@ -66,8 +64,7 @@ def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Act
 
 
 def node(name_in_set: Text = "", **options: Any) -> Action:
-    """Return a node of a robot's node sets: launch_ros's Node with its program, names, remappings and
-    parameters.
+    """Return a node of a robot's node sets as launch_ros's Node, with all that the fleet says of it.
 
     For a controller it is that of its spawner, with its parameter files as ``-p``; a component is
     loaded into its container. ``name_in_set`` is its name in the node set; ``files`` are parameter
@@ -83,16 +80,17 @@ def lifecycle_node(name_in_set: Text = "", **options: Any) -> Action:
 
 
 def container(name_in_set: Text = "", **options: Any) -> Action:
-    """Return a container of a robot's node sets as launch_ros's ComposableNodeContainer. It takes
-    the rules and parameter files of all nodes in its process, also of those that its components
-    make, such as costmaps: give it the files of its components, too."""
+    """Return a container of a robot's node sets as launch_ros's ComposableNodeContainer.
+
+    It takes the rules and parameter files of all nodes in its process, also of those that its
+    components make, such as costmaps: give it the files of its components, too."""
     base = of_launch_ros("actions").ComposableNodeContainer
     return _node("container", base, name_in_set, options)
 
 
 def composable_node(name_in_set: Text = "", **options: Any) -> Any:
     """Return a component: launch_ros's ComposableNode, for containers and LoadComposableNodes."""
-    own, first = _taken("composable_node", name_in_set, options)
+    own, first = _split_options("composable_node", name_in_set, options)
 
     def made(context: Context) -> dict[str, Any]:
         name, its = perform(context, name_in_set), robot_of(context, own["of"])
@@ -114,7 +112,7 @@ def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: An
         its = robot_of(context, of)
         return SPAWNERS[called], its.spawn_arguments if called == "gz" else its.classic_arguments
 
-    return _program(program, of, options)
+    return _run_program(program, of, options)
 
 
 def place(robot: Text = None, fleet: Text = None, **options: Any) -> Action:
@@ -125,7 +123,7 @@ def place(robot: Text = None, fleet: Text = None, **options: Any) -> Action:
     def program(context: Context) -> tuple[tuple[str, str], list[str]]:
         return PLACER, robot_of(context, of).transform_arguments
 
-    return _program(program, of, options)
+    return _run_program(program, of, options)
 
 
 def node_class() -> Any:
@@ -135,7 +133,7 @@ def node_class() -> Any:
 
 def _node(word: str, base: Any, name_in_set: Text, options: Mapping[str, Any]) -> Action:
     """Return an action of the class ``base`` for a node of a node set."""
-    own, first = _taken(word, name_in_set, options)
+    own, first = _split_options(word, name_in_set, options)
 
     def made(context: Context) -> later.Made:
         called, its = perform(context, name_in_set), robot_of(context, own["of"])
@@ -144,17 +142,17 @@ def _node(word: str, base: Any, name_in_set: Text, options: Mapping[str, Any]) -
         box = its.table.container(called)
         programmed = _with_program(its, called, first, component=bool(box))
         given = _node_options(context, called, own, programmed)
-        return _loaded(box, given, programmed) if box else given
+        return _load_component(box, given, programmed) if box else given
 
     known = {key: it for key, it in first.items() if key != "plugin"}
     named = {} if base is node_class() else {"name": "later", "namespace": "", "package": "later"}
     return later.action(base, made, {"executable": "later", **named, **known})
 
 
-def _taken(
+def _split_options(
     word: str, name_in_set: Text, options: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the options that are ours, and launch_ros's."""
+    """Return the options of this package, and those of launch_ros."""
     _check_options(word, options)
     if not name_in_set:
         raise UsageError(f'{word}: which node? Write its name in the node set: {word}("amcl")')
@@ -177,9 +175,10 @@ def _check_options(word: str, options: Mapping[str, Any]) -> None:
 def _node_options(
     context: Context, name: str, own: Mapping[str, Any], options: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return the options with those of the node, or of a controller's spawner, in this launch.
-    Given remappings come first and given parameters last, since rcl applies the first rule that
-    matches and the last value."""
+    """Return a node's options in this launch, or those of a controller's spawner.
+
+    Given remappings come first and given parameters last: rcl takes the first rule and the last
+    value."""
     its = robot_of(context, own["of"])
     paths = [node_file_of(context, it, own["of"]) for it in listed(context, own["files"] or "")]
     clock = sim_time(context, its, own[SIM_TIME])
@@ -201,8 +200,7 @@ def _node_options(
 def _with_program(
     robot: LoadedRobot, name: str, options: Mapping[str, Any], component: bool = False
 ) -> dict[str, Any]:
-    """Return the options, with the program from the node's node set if they name none; raises
-    UsageError without either. ``component``: it is loaded into a container."""
+    """Return the options with the program or class of the node set; raises UsageError without any."""
     word = "plugin" if component else "executable"
     if word in options:
         return dict(options)
@@ -219,7 +217,7 @@ def _option_list(options: Mapping[str, Any], word: str) -> list[Any]:
     return [*(options.get(word) or ())]
 
 
-def _loaded(box: str, options: Mapping[str, Any], given: Mapping[str, Any]) -> list[Action]:
+def _load_component(box: str, options: Mapping[str, Any], given: Mapping[str, Any]) -> list[Action]:
     """Return a component, loaded into the container that the robot runs; UsageError for a program."""
     if "executable" in given:
         name, stays = options["name"], "or take a node set in which it has a process of its own"
@@ -229,7 +227,7 @@ def _loaded(box: str, options: Mapping[str, Any], given: Mapping[str, Any]) -> l
     return [of_launch_ros("actions").LoadComposableNodes(target_container=box, **loaded)]
 
 
-def _program(
+def _run_program(
     find: Callable[[Context], tuple[tuple[str, str], list[str]]],
     of: RobotRef,
     options: Mapping[str, Any],
@@ -258,8 +256,7 @@ def own_file(
     values: Mapping[str, Mapping[str, Any]],
     clock: bool | None,
 ) -> list[str]:
-    """Return the path of a file with what no file of the fleet sets for a node, by its full name,
-    and with the clock, if it needs one."""
+    """Return the path of a file with what no file of the fleet sets for a node, and its clock."""
     # Nodes that others make in their process have no values but those for all of it.
     clocks = {} if clock is None else {"/**": {SIM_TIME: clock}}
     sections = clocks | {name: dict(own) for name, own in values.items() if own}

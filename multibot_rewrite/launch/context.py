@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What actions and substitutions ask while a launch runs: its fleets, robots and files; and
-substitutions about a robot, known then.
+"""What actions and substitutions ask while a launch runs: its fleets, robots and files.
 
 A launch keeps each fleet and a folder for files that goes at its end. A robot or fleet that is not
 given is that of the enclosing group. It is among the locals of the context: launch keeps these for
@@ -15,9 +14,9 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.library.loaded_fleet import LoadedFleet, load_fleet
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
@@ -60,7 +59,7 @@ def entered(context: Context, group: Here) -> None:
 
 
 def here(context: Context) -> Here:
-    """Return fleet and robot of the enclosing group."""
+    """Return the fleet and the robot of the enclosing group; None outside of one."""
     known = context.get_locals_as_dict()
     return known.get(FLEET), known.get(ROBOT)
 
@@ -75,13 +74,13 @@ def _carry(context: Context) -> None:
     def registered(event_handler: Any, *more: Any, **options: Any) -> None:
         group = here(context)
         if any(group) and not _is_of_timers(event_handler):
-            event_handler.handle = _handler_in(event_handler.handle, group)
+            event_handler.handle = _handler_for_group(event_handler.handle, group)
         register(event_handler, *more, **options)
 
     context.register_event_handler = registered
 
 
-def _handler_in(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
+def _handler_for_group(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
     def handled(event: Any, context: Context) -> Any:
         # launch drops the locals when it has visited what this returns.
         entered(context, group)
@@ -97,7 +96,8 @@ def _is_of_timers(handler: Any) -> bool:
 
 
 def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
-    """Return the fleet of a file, for a function of OpaqueFunction; a launch loads each file once.
+    """Return the fleet of a file, which a launch loads once, for a function of OpaqueFunction.
+
     ``fleet`` may hold substitutions. The launch configurations ``multibot_trust:=true`` and
     ``multibot_distro``, ``multibot_robots`` and ``multibot_count`` are options of ``load_fleet``.
     Findings go to launch's log. Raises as that."""
@@ -113,7 +113,7 @@ def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
         trusted = trust.lower() in ("true", "1")
         number = number_of(count)
         known[key] = load_fleet(path, trust=trusted, distro=distro, robots=robots, count=number)
-        _warn(context, known[key].findings)
+        _log_findings(context, known[key].findings)
     return known[key]
 
 
@@ -143,18 +143,17 @@ def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
     asked = of.robot is not None or here(context)[1] or ROBOT in context.launch_configurations
     robot = robot_of(context, of) if asked else None
     text = robot.text(file) if robot else fleet.text(file)
-    _warn(context, fleet.made.findings)
+    _log_findings(context, fleet.made.findings)
     return written(context, robot, os.path.basename(file), text)
 
 
 def node_file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
-    """Return the path of a robot's parameter file for nodes that are started here: with full node
-    names, and its substitutions, such as ``$(find-pkg-share ...)``, performed."""
+    """Return the path of a robot's parameter file, full names and substitutions filled in."""
     robot = robot_of(context, of)
     text = robot.node_text(file)
     if "$(" in text:
         text = perform(context, of_launch("frontend.parse_substitution").parse_substitution(text))
-    _warn(context, fleet_of(context, of.fleet).made.findings)
+    _log_findings(context, fleet_of(context, of.fleet).made.findings)
     return written(context, robot, f"nodes/{os.path.basename(file)}", text)
 
 
@@ -167,8 +166,7 @@ def perform(context: Context, text: Text) -> str:
 
 
 def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
-    """Return whether a robot's node uses the time of the simulator, None if nothing tells. What is
-    ``told`` counts first, then the launch argument ``use_sim_time``, then the fleet file."""
+    """Return use_sim_time as ``told``, as the launch argument or as the fleet file says; or None."""
     if isinstance(told, bool):
         return told
     text = context.launch_configurations.get(SIM_TIME) if told is None else perform(context, told)
@@ -223,7 +221,7 @@ def _folder(context: Context) -> TemporaryDirectory[str]:
     return folder
 
 
-def _warn(context: Context, findings: Iterable[Finding]) -> None:
+def _log_findings(context: Context, findings: Iterable[Finding]) -> None:
     logged: set[Finding] = _of_launch(context, _LOGGED, set)
     for finding in findings:
         if finding not in logged:
@@ -283,6 +281,7 @@ def bridge_config(robot: Text = None, fleet: Text = None) -> Substitution:
 
 def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -> Substitution:
     """Return the substitution ``$(multibot WORD NAME)``: one of ``WORDS``, or the path of a file.
+
     As the value of a parameter it is a string whatever is in it, and a number for ``pose``:
     launch_ros reads other substitutions as YAML, refuses a description with ``: `` in a comment,
     and takes a robot called ``on`` for true."""
@@ -303,7 +302,7 @@ def substitution_class() -> Any:
             self.words, self.of = words, of
 
         def perform(self, context: Context) -> str:
-            return _value_of(context, [perform(context, it) for it in self.words], self.of)
+            return _value_of_words(context, [perform(context, it) for it in self.words], self.of)
 
         def evaluate(self, context: Context) -> str | float:
             text = self.perform(context)
@@ -320,7 +319,8 @@ def as_value(value: Any) -> Any:
     return parts[0] if alone and isinstance(parts[0], substitution_class()) else value
 
 
-def _value_of(context: Context, words: Sequence[str], of: RobotRef) -> str:
+def _value_of_words(context: Context, words: Sequence[str], of: RobotRef) -> str:
+    """Return the value of ``$(multibot ...)`` with these words."""
     options = [it for it in words if it.partition(":=")[0] in RobotRef._fields and ":=" in it]
     of = of._replace(**dict(it.split(":=", 1) for it in options))
     word, name = (*(it for it in words if it not in options), "", "")[:2]

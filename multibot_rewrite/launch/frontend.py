@@ -49,8 +49,7 @@ def robots(entity: Any, parser: Any) -> Parsed:
 
 
 def node(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_node node= [files=] [describe=] [use_sim_time=] [robot=] [fleet=]`` and what
-    ``node`` takes, see ``launch.node``."""
+    """Parse ``multibot_node``, with the attributes of ``node`` and the options of ``launch.node``."""
     return actions.node, _node("multibot_node", actions.node_class(), entity, parser)
 
 
@@ -81,12 +80,12 @@ def composable_node(entity: Any, parser: Any) -> Parsed:
 def spawn(entity: Any, parser: Any) -> Parsed:
     """Parse ``multibot_spawn simulator= [robot=] [fleet=]``, see ``launch.spawn``."""
     simulator = parser.parse_substitution(entity.get_attr("simulator"))
-    return actions.spawn, {"simulator": simulator, **_program(entity, parser)}
+    return actions.spawn, {"simulator": simulator, **_program_options(entity, parser)}
 
 
 def place(entity: Any, parser: Any) -> Parsed:
     """Parse ``multibot_place [robot=] [fleet=]``, see ``launch.place``."""
-    return actions.place, _program(entity, parser)
+    return actions.place, _program_options(entity, parser)
 
 
 def action_options(entity: Any, parser: Any) -> dict[str, Any]:
@@ -134,6 +133,7 @@ class _Programless:
 
 
 def _own_attributes(entity: Any, parser: Any) -> dict[str, Any]:
+    """Return the options of an element that launch_ros does not read."""
     name = parser.parse_substitution(entity.get_attr("node"))
     describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
     texts = _texts(entity, parser, "files", "robot", "fleet", SIM_TIME)
@@ -150,7 +150,7 @@ def _component(entity: Any, parser: Any) -> dict[str, Any]:
     if params := _nested(entity, "param"):
         given["parameters"] = actions.node_class().parse_nested_parameters(params, parser)
     if remaps := _nested(entity, "remap"):
-        given["remappings"] = [_rule(it, parser) for it in remaps]
+        given["remappings"] = [_remap_rule(it, parser) for it in remaps]
     return {**given, **_parameters(given), **_own_attributes(entity, parser)}
 
 
@@ -160,7 +160,7 @@ def _nested(entity: Any, word: str) -> list[Any]:
     return entity.get_attr(word, data_type=several, optional=True) or []
 
 
-def _rule(entity: Any, parser: Any) -> tuple[Any, Any]:
+def _remap_rule(entity: Any, parser: Any) -> tuple[Any, Any]:
     source, target = (parser.parse_substitution(entity.get_attr(it)) for it in ("from", "to"))
     entity.assert_entity_completely_parsed()
     return source, target
@@ -175,7 +175,7 @@ def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
     return {"parameters": found} if found else {}
 
 
-def _program(entity: Any, parser: Any) -> dict[str, Any]:
+def _program_options(entity: Any, parser: Any) -> dict[str, Any]:
     texts = _texts(entity, parser, "robot", "fleet", SIM_TIME, "output")
     return {**texts, **action_options(entity, parser)}
 

@@ -21,7 +21,7 @@ Made = Options | list[Action]
 
 def action(base: Any, make: Callable[[Context], Made], first: Mapping[str, Any]) -> Action:
     """Return an action of the class ``base``: with options ``first``, then with those of ``make``."""
-    return _action(base)(make, first)
+    return _action_class(base)(make, first)
 
 
 def component(base: Any, make: Callable[[Context], Options], first: Mapping[str, Any]) -> Any:
@@ -30,7 +30,9 @@ def component(base: Any, make: Callable[[Context], Options], first: Mapping[str,
 
 
 @cache
-def _action(base: Any) -> Any:
+def _action_class(base: Any) -> Any:
+    """Return a class of actions that make themselves again when they run."""
+
     class OfRobot(base):  # type: ignore[misc]
         """An action of launch_ros for a robot."""
 
@@ -57,6 +59,8 @@ def _action(base: Any) -> Any:
 
 @cache
 def _component_class(base: Any) -> Any:
+    """Return a class of components that make themselves again when they are loaded."""
+
     class ComponentOfRobot(base):  # type: ignore[misc]
         """A component for a robot."""
 
@@ -67,7 +71,7 @@ def _component_class(base: Any) -> Any:
         @property
         def package(self) -> Any:
             """Its package; launch_ros asks for it first of all that is a robot's."""
-            return [_first_word()(self._made)]
+            return [_made_text_class()(self._made)]
 
         def _made(self, context: Context) -> str:
             make, self.__make = self.__make, None
@@ -79,7 +83,9 @@ def _component_class(base: Any) -> Any:
 
 
 @cache
-def _first_word() -> Any:
+def _made_text_class() -> Any:
+    """Return a class of substitutions whose text a function makes."""
+
     class Made(of_launch().Substitution):  # type: ignore[misc]
         """A text that a function makes."""
 

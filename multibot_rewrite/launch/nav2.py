@@ -16,11 +16,11 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
 from multibot_rewrite.fleet.outputs.rviz_outputs import robot_windows, window_start
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER as MANAGER, NAV2
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch.actions import each_robot, node_class, own_file, place
 from multibot_rewrite.launch.context import (
     SIM_TIME,
@@ -68,7 +68,7 @@ def generate_launch_description() -> Any:
     ]
     fleet, robots = _configuration("fleet"), _configuration("robots")
     each = each_robot(fleet, lambda it: [opaque(function=partial(_starts, it)), place()], robots)
-    made = [opaque(function=_shared), each, opaque(function=_rviz)]
+    made = [opaque(function=_shared_actions), each, opaque(function=_rviz_windows)]
     return of_launch().LaunchDescription([*declared, *made])
 
 
@@ -81,6 +81,7 @@ def _is_on(context: Context, argument: str) -> bool:
 
 
 def _starts(robot: LoadedRobot, context: Context) -> list[Action]:
+    """Return what a robot starts: its nodes of Nav2, their state publisher, bridges and relays."""
     names = robot.table
     # Other nodes that its files have sections for may run, too: the node sets say which do.
     known = nodes_of_nav2(it for it in robot.node_set if it in names.nodes)
@@ -122,8 +123,9 @@ def _process(context: Context, robot: LoadedRobot, it: Start) -> list[Action]:
 
 
 def _keywords(context: Context, robot: LoadedRobot, it: Start) -> dict[str, Any]:
-    """Return the keywords of a process or component alone: paths of the files of this launch, one
-    of them with what no file of the fleet sets, such as the nodes that it manages, and its map."""
+    """Return the keywords of a process or component alone, with its parameter files of this launch.
+
+    One of them has what no file of the fleet sets, such as the nodes that it manages, and its map."""
     of, shared = (
         RobotRef(robot.name, _configuration("fleet")),
         fleet_of(context, _configuration("fleet")).table,
@@ -166,16 +168,15 @@ def _activated(made: Action) -> Iterator[Action]:
     yield change("configure")
 
 
-def _shared(context: Context) -> list[Action]:
-    """Return the nodes that all robots share, with a lifecycle manager of their own: they have
-    their sections in the files of every robot, and these are alike."""
+def _shared_actions(context: Context) -> list[Action]:
+    """Return the nodes that all robots share; their sections are alike in every robot's files."""
     fleet = fleet_of(context, _configuration("fleet"))
     shared = (it for it in fleet.starts.shared if kind_of(it.name) in NAV2)
     return [one for it in shared for one in _process(context, fleet.robots[0], it)]
 
 
-def _rviz(context: Context) -> list[Action]:
-    """Return the windows that are asked for."""
+def _rviz_windows(context: Context) -> list[Action]:
+    """Return the RViz windows that the launch argument asks for; raises UsageError without any."""
     word = str(context.launch_configurations.get("rviz", NONE)).strip().lower()
     if word not in (NONE, ONE, EACH):
         raise UsageError(f"rviz:={word}: {unknown('way', word, (NONE, ONE, EACH))}")
@@ -192,10 +193,10 @@ def _rviz(context: Context) -> list[Action]:
             hint = "say relayed: true in the fleet file, or rviz:=each"
             raise UsageError(f"rviz:=one: these robots need {len(windows)} windows; {hint}")
         windows = shared
-    return [_window(context, *it) for it in windows]
+    return [_rviz_window(context, *it) for it in windows]
 
 
-def _window(context: Context, file: str, window: RvizText) -> Action:
+def _rviz_window(context: Context, file: str, window: RvizText) -> Action:
     path = written(context, None, f"{window.robot or 'all'}/{file}", window.text)
     given = keywords(window_start(window, path))
     clock = sim_time(context, fleet_of(context, _configuration("fleet")).robots[0], None)
@@ -204,7 +205,7 @@ def _window(context: Context, file: str, window: RvizText) -> Action:
 
 
 def kind_of(name: str) -> str:
-    """Return the name in ``NAV2`` of a node of a node set; its own where that has it not."""
+    """Return the name in ``NAV2`` of a node of a node set; its own name if ``NAV2`` lacks it."""
     return MANAGER if name.startswith(MANAGER) else _KINDS.get(name, name)
 
 

@@ -17,6 +17,7 @@ from typing import Any
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.checks.build import Outputs, make_outputs
 from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.description.sources.read import read_file
@@ -32,7 +33,6 @@ from multibot_rewrite.fleet.robots.loaded_robot import KeptFiles, LoadedRobot
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import Jobs
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.related_files.params.rcl_parameters import check_values
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 
@@ -57,7 +57,7 @@ class LoadedFleet:
         return f"LoadedFleet({self.file!r})"
 
     def __reduce__(self) -> tuple[Callable[..., LoadedFleet], tuple[object, ...]]:
-        return _planned, (self.plan.file, self.plan.jobs)
+        return _unpickled, (self.plan.file, self.plan.jobs)
 
     @checked
     def robot(self, name: str) -> LoadedRobot:
@@ -90,16 +90,16 @@ class LoadedFleet:
         rewritten.
         """
         made = make_outputs(self.plan)
-        _refuse(made.findings)
+        _refuse_errors(made.findings)
         return made
 
     @cached_property
     def _with_full_names(self) -> Mapping[str, OutputFile]:
-        """The same files, parameter files with the full names of nodes whatever the fleet file says."""
-        return {it.path: it for it in self._named.files}
+        """The files of the build, with full names of nodes in parameter files."""
+        return {it.path: it for it in self._named_outputs.files}
 
     @cached_property
-    def _named(self) -> Outputs:
+    def _named_outputs(self) -> Outputs:
         if not self.plan.file.params_style:
             return self.made
         return make_outputs(self.plan._replace(file=self.plan.file._replace(params_style="")))
@@ -107,16 +107,16 @@ class LoadedFleet:
     @property
     def starts(self) -> FleetStarts:
         """All that the launch file of its build starts; raises as ``made``."""
-        return self._named.starts
+        return self._named_outputs.starts
 
     @cached_property
     def files(self) -> Mapping[str, OutputFile]:
-        """The same files by path, such as ``robot1/params.yaml``; raises as ``made``."""
+        """The files of the build by path, as ``robot1/params.yaml``; raises as ``made``."""
         return {it.path: it for it in self.made.files}
 
     @checked
     def text(self, path: str) -> str:
-        """Return the text of one of these files; raises UsageError for an unknown path, as ``made``."""
+        """Return the text of a file; raises UsageError for an unknown path, and as ``made``."""
         if path not in self.files:
             hint = "list it under related_files: in the fleet file"
             raise UsageError(f"{self.file}: {unknown('file', path, self.files)}; {hint}")
@@ -129,8 +129,7 @@ class LoadedFleet:
 
     @checked
     def parameters(self, path: str) -> YamlText:
-        """Return one of these files as a parameter file. Raises as ``text``, and InputError with
-        the line of the source for values that rcl rejects."""
+        """Return a parameter file; raises as ``text``, InputError for values that rcl rejects."""
         if path not in self._parameters:
             text = self.node_text(path)
             made = {it for one in self.plan.file.robots for it, _ in one.filled}
@@ -166,16 +165,16 @@ def load_fleet(
     source = path if isinstance(path, Mapping) else os.fspath(path)
     file = read_fleet(source, distro, os.environ, Choice(robots, count))
     fleet = LoadedFleet(plan_fleet(file, trust=trust))
-    _refuse(fleet.findings)
+    _refuse_errors(fleet.findings)
     return fleet
 
 
-def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
-    """Return the fleet of a pickle, rewritten again from the descriptions that it includes."""
+def _unpickled(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
+    """Return the fleet of a pickle, rewritten from the descriptions in it."""
     return LoadedFleet(plan_fleet(file, jobs=jobs))
 
 
-def _refuse(findings: Iterable[Finding]) -> None:
+def _refuse_errors(findings: Iterable[Finding]) -> None:
     wrong = tuple(it for it in findings if it.level == ERROR)
     if wrong:
         raise RewriteRefused(wrong)

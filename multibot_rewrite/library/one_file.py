@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A related file of a description, rewritten for robots without a fleet file: parameters, RViz,
-MoveIt, a bridge, a behavior tree, Lua."""
+"""Rewrites a related file of a description for robots without a fleet file."""
 
 from __future__ import annotations
 
@@ -35,8 +34,9 @@ _IN_GRAPH = frozenset(("topic", "service"))
 
 
 class RewrittenFile(NamedTuple):
-    """A file as one robot needs it: its ``kind`` (params, rviz, moveit, bridge, tree or lua), its
-    bytes, what is wrong in it, and why robots may meet all the same (empty where it is verified)."""
+    """A file as one robot needs it, with its kind (params, rviz, moveit, bridge, tree, lua).
+
+    ``not_verified`` says why robots may collide all the same; it is empty if verified."""
 
     robot: str
     kind: str
@@ -69,12 +69,12 @@ def rewrite_file(
     trust: bool = False,
     distro: str = "",
 ) -> RewrittenFile:
-    """Rewrite a related file of a description for ``robot``: parameters, RViz, MoveIt,
-    ros_gz_bridge, a behavior tree of Nav2, Cartographer's Lua, told by what is in it.
+    """Rewrite a related file of a description for ``robot``, by what is in it.
 
-    ``urdf`` is the robot's description, not rewritten; the other options are those of ``rewrite``.
-    Raises InputError (cannot be read), UsageError (a wrong argument, or a description is needed).
-    """
+    Kinds are parameters, RViz, MoveIt, ros_gz_bridge, behavior trees of Nav2, Cartographer's
+    Lua. ``urdf`` is the robot's description, not rewritten; the other options are those of
+    ``rewrite``. Raises InputError (cannot be read), UsageError (a wrong argument, or a
+    description is needed)."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     given = (urdf, xacro_args, definitions, file, trust, release_here(distro))
     return next(_rewritten_files(source, (robot,), naming, *given))
@@ -99,9 +99,9 @@ def rewrite_files(
     trust: bool = False,
     distro: str = "",
 ) -> Iterator[RewrittenFile]:
-    """Yield the file rewritten for several robots, in their order. What a bridge carries for all,
-    such as the clock, is in the file of the first. Raises as ``rewrite_file``, before the first
-    result."""
+    """Yield the file for several robots; raises as ``rewrite_file``, before the first result.
+
+    What a bridge carries for all, such as the clock, is in the file of the first."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     given = (urdf, xacro_args, definitions, file, trust, release_here(distro))
     return _rewritten_files(source, tuple(robots), naming, *given)
@@ -111,7 +111,7 @@ def names_in_file(data: bytes, file: str, urdf: bytes) -> NamedFile:
     """Return the names in a related file of the description ``urdf``; raises as ``rewrite_file``."""
     naming, release = make_naming(), release_here("")
     job = read_jobs(["r"], urdf, naming, None, None, (), "", False, release)["r"]
-    return read_named(kind_alone(data, file), data, file, _context(job, naming, release))
+    return read_named(kind_alone(data, file), data, file, _context_of_job(job, naming, release))
 
 
 def _rewritten_files(
@@ -133,7 +133,7 @@ def _rewritten_files(
     if urdf is not None:
         given = (xacro_args, definitions, "", trust, release)
         jobs = read_jobs(robots, urdf, naming, None, *given)
-    contexts = {it: _context(jobs.get(it), naming, release) for it in robots}
+    contexts = {it: _context_of_job(jobs.get(it), naming, release) for it in robots}
     if urdf is None:
         # Without a description only files whose names do not rest on one can be rewritten.
         context = contexts[robots[0]]
@@ -146,12 +146,13 @@ def _rewritten_files(
             what = f"{name}:{found.line} names the {found.kind} {found.text!r}"
             raise UsageError(f"{what}; give the robot's description with --urdf")
     made = [
-        _for_robot(kind, read.data, name, it, robots, contexts[it], jobs.get(it)) for it in robots
+        _file_for_robot(kind, read.data, name, it, robots, contexts[it], jobs.get(it))
+        for it in robots
     ]
     return iter(made)
 
 
-def _context(job: Job | None, naming: Naming, release: str) -> Context:
+def _context_of_job(job: Job | None, naming: Naming, release: str) -> Context:
     if job is None:
         return make_context({kind: {} for kind in _DECLARED}, naming, (), release)
     described, own = job.inventories[0], job.own.plain or NO_OWN
@@ -161,7 +162,7 @@ def _context(job: Job | None, naming: Naming, release: str) -> Context:
     return make_context(names.declared, job.naming, (), release, names.own, *made)
 
 
-def _for_robot(
+def _file_for_robot(
     kind: str,
     data: bytes,
     file: str,

@@ -51,8 +51,9 @@ def system_of_description(
     distro: str = "",
 ) -> System:
     """Return what robots of a description should run, with the nodes of ``node_sets``: a plan.
-    ``policy`` are naming options of ``rewrite``. Raises as ``rewrite_all``, and UsageError for an
-    unknown node set."""
+
+    ``policy`` are naming options of ``rewrite``. Raises as ``rewrite_all``, and UsageError for
+    an unknown node set."""
     given = (source, robots, node_sets, policy)
     return expected(make_fleet(*given, xacro_args=xacro_args, trust=trust, release=distro))
 
@@ -71,9 +72,10 @@ def system_of_launch(
     trust: bool = False,
     distro: str = "",
 ) -> System:
-    """Return what a launch file would start. It is a program: with ``trust`` it may do anything,
-    without it only compute and read (SECURITY.md). ``roots`` are folders with the sources of
-    packages. Raises InputError for a file that cannot be read."""
+    """Return what a launch file would start; raises InputError for one that cannot be read.
+
+    It is a program: with ``trust`` it may do anything, without it only compute and read
+    (SECURITY.md). ``roots`` are folders with the sources of packages."""
     from multibot_rewrite.producers.launch.records import LaunchOrder
 
     order = LaunchOrder(os.fspath(path), tuple(arguments.items()), tuple(roots), trust)
@@ -86,9 +88,10 @@ def launched_by(
     nodes: str | None = None,
     nodl: Sequence[str] = (),
 ) -> Launched:
-    """Return what launch files would start together, in the release ``told`` or otherwise the one
-    that they are for; ``nodes`` and ``nodl`` are files of the user's own nodes. Raises InputError
-    for a file that cannot be read."""
+    """Return what launch files would start together; raises InputError for one that is unreadable.
+
+    The release is ``told``, or the one that they are for; ``nodes`` and ``nodl`` are the user's
+    files."""
     from multibot_rewrite.producers.launch.child import launch_graph
     from multibot_rewrite.producers.launch.known_node import with_sources
     from multibot_rewrite.producers.launch.records import joined
@@ -109,16 +112,16 @@ def launched_by(
 
 
 def system_of_folder(path: Path, *, distro: str = "") -> System:
-    """Return what a folder of ``multibot build`` would start, read as ``system_of_launch`` reads
-    its launch file, without its plan. Raises InputError for a folder without one."""
+    """Return what a folder of ``multibot build`` would start; raises InputError for another.
+
+    It is read as by ``system_of_launch``, without its plan."""
     from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 
     return system_of_launch(os.path.join(os.fspath(path), LAUNCH), distro=distro)
 
 
 def system_of_files(*paths: Path) -> System:
-    """Return the system of a plan (``multibot plan``), or of one or several snapshots. Raises
-    InputError with file, place and what is wrong."""
+    """Return the system of a plan or of snapshots; raises InputError with file and place."""
     if len(paths) == 1:
         file = os.fspath(paths[0])
         data = read_file(file, MAX_FLEET_BYTES)
@@ -138,8 +141,10 @@ def system_of_bag(path: Path) -> System:
 def system_of_graph(
     *, seconds: float = 30.0, domain: int | None = None, states: bool = False
 ) -> System:
-    """Return the running ROS graph, observed until it no longer changes; with ``states`` its nodes
-    are asked for theirs. Raises MultibotError if rclpy is missing or does not start."""
+    """Return the running ROS graph, observed until it no longer changes.
+
+    With ``states`` its nodes are asked for theirs. Raises MultibotError if rclpy is missing or
+    does not start."""
     from multibot_rewrite.producers.ros.child import ask, observe
     from multibot_rewrite.producers.ros.request import Request
 

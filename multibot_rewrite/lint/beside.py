@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A related file of a description, with what its package declares -> what the rules for its kind
-find."""
+"""A related file of a description -> what the rules for its kind find."""
 
 from __future__ import annotations
 
@@ -35,15 +34,17 @@ _DECLARED = frozenset(KINDS)
 
 
 def robots_of(file: str, settings: Settings) -> Robots:
-    """Return the description that was named, otherwise those of the file's package, then those of
-    description packages next to it, then those that are linted with it."""
+    """Return the description that was named, otherwise those that the file may belong to.
+
+    These are those of its package, otherwise of description packages next to it, otherwise those
+    that are linted with it."""
     own = package_of(file)
     folder = own[1] if own else os.path.dirname(os.path.abspath(file))
-    paths = [settings.urdf] if settings.urdf else _descriptions(folder)
+    paths = [settings.urdf] if settings.urdf else _robot_descriptions(folder)
     if not paths and own:
         above = os.path.dirname(folder)
         others = sorted(it for it in entries(above) if it.endswith("_description"))
-        paths = [path for it in others for path in _descriptions(os.path.join(above, it))]
+        paths = [path for it in others for path in _robot_descriptions(os.path.join(above, it))]
     paths = paths or [path for _, path in settings.urdfs]
     if not paths:
         return NO_ROBOTS
@@ -60,7 +61,7 @@ def robots_of(file: str, settings: Settings) -> Robots:
     return Robots(found, tuple(subjects), len(subjects) == len(paths))
 
 
-def _descriptions(folder: str) -> list[str]:
+def _robot_descriptions(folder: str) -> list[str]:
     """Return the files below a folder with a named robot: others are parts of these."""
     return [path for path in descriptions_below(folder) if robot_name(path)]
 

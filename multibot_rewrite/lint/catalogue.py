@@ -15,7 +15,7 @@ HOMES = {
     "related_files.rviz": "window_checks",
     "description.checks": "references robots",
     "description.steps": "plan",
-    "checks": "across_domains lacking meeting named_twice of_robots",
+    "checks": "across_domains lacking meeting of_robots",
     "fleet.file": "simulator_switch",
     "fleet.launch": "launched_files",
     "fleet.outputs": "bridge_outputs controller_files moveit_parameters params_style rviz_outputs"
@@ -41,8 +41,7 @@ def rules() -> Mapping[str, Rule]:
 
 @cache
 def declared() -> tuple[Rule, ...]:
-    """Return the rules of commands other than the lint, in the order of the codes. If two have one
-    code and other examples, it is that of the declaring module."""
+    """Return the rules of commands other than the lint, in the order of the codes, each code once."""
     from multibot_rewrite.lint.registry import RULES
     from multibot_rewrite.rules import check
     from multibot_rewrite.rules.launch import judge

@@ -48,14 +48,14 @@ def lint_file(path: str, settings: Settings) -> list[Finding]:
 def lint_data(
     path: str, data: bytes, settings: Settings, wanted: Callable[[Rule], bool] = bool
 ) -> list[Finding]:
-    """Return the findings of a text; ``path`` is its name, and xacro resolves includes from there.
-    A description is checked by the ``wanted`` rules."""
+    """Return what the ``wanted`` rules find in a text; xacro resolves includes from ``path``."""
     return _lint_source(path, lambda: data, settings, wanted)
 
 
 def _lint_source(
     path: str, read: Callable[[], bytes], settings: Settings, wanted: Callable[[Rule], bool] = bool
 ) -> list[Finding]:
+    """Return the findings of what ``read`` returns, those about its comments too, in order."""
     found: list[Finding] = []
     sources: dict[str, bytes] = {}
     try:
@@ -70,7 +70,7 @@ def _lint_source(
 
                 its = list(related_file_findings(path, data, settings))
                 return sorted(unsuppressed(its, {}, settings), key=by_place)
-            _look(path, data, settings, wanted, found, sources)
+            _add_findings(path, data, settings, wanted, found, sources)
     except InputError as error:
         found.append(failure(path, error, settings))
     except _TooLongError:
@@ -86,7 +86,7 @@ def _lint_source(
     return sorted(unsuppressed(list(first.values()), sources, settings), key=by_place)
 
 
-def _look(
+def _add_findings(
     path: str,
     data: bytes,
     settings: Settings,
@@ -94,8 +94,7 @@ def _look(
     found: list[Finding],
     sources: dict[str, bytes],
 ) -> None:
-    """Add findings, and the files that were read; the subjects are released before the garbage
-    collector is back, which would search all of them."""
+    """Add findings and the files that were read; it releases the subjects before it returns."""
     for subject in read_subjects(path, data, settings):
         if isinstance(subject, Failed):
             it = failure(path, subject.error, settings)
@@ -128,7 +127,7 @@ def _limited(seconds: float) -> Iterator[None]:
     """Raise _TooLongError after that time; only a process's main thread can be stopped like that."""
     before: Any = None
     with suppress(ValueError):  # raised in other threads; to ask threading is slow to import
-        before = signal.signal(signal.SIGALRM, _stop)
+        before = signal.signal(signal.SIGALRM, _raise_too_long)
     if before is None:
         yield
         return
@@ -141,14 +140,15 @@ def _limited(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-def _stop(*_: object) -> NoReturn:
+def _raise_too_long(*_: object) -> NoReturn:
     raise _TooLongError
 
 
 def unsuppressed(
     findings: Sequence[Finding], sources: Mapping[str, bytes], settings: Settings
 ) -> list[Finding]:
-    """Return the findings that no comment or per-file setting suppresses, and those about comments.
+    """Return the findings that no comment or setting suppresses, and those about comments.
+
     The first of ``sources`` is the file that is linted, the others are those it includes."""
     reported = [it for it in findings if not is_silent(settings, file_of(it), it.code)]
     if not any(MARK in source for source in sources.values()):
@@ -205,10 +205,10 @@ def _place(
     if origin is None:
         document = subject.document
         start = document.starts[number]
-        offset = start + _within(document.source, start, attribute)
+        offset = start + _value_offset(document.source, start, attribute)
         return document.file, document.source, offset, ()
     source = subject.sources[origin.file]
-    offset = origin.start + _within(source, origin.start, attribute)
+    offset = origin.start + _value_offset(source, origin.start, attribute)
     return origin.file, source, offset, origin.calls
 
 
@@ -217,19 +217,19 @@ def _is_argument(subject: Subject, number: int, attribute: str | None) -> bool:
     return origin is not None and is_argument(subject.sources, origin, attribute or "")
 
 
-def _within(source: bytes, start: int, attribute: str | None) -> int:
+def _value_offset(source: bytes, start: int, attribute: str | None) -> int:
     """Return the offset of a value from the start of its tag; 0 for an attribute that is missing."""
     if attribute is None:
         return 0
     if not attribute:
         end = tag_end(source, start)
         return next(_BLANK.finditer(source, end)).end() - start
-    at = _attributes(source, start).get(attribute.rpartition("}")[2].encode())
+    at = _attribute_offsets(source, start).get(attribute.rpartition("}")[2].encode())
     return at - start if at else 0
 
 
 @lru_cache(maxsize=64)
-def _attributes(source: bytes, start: int) -> dict[bytes, int]:
+def _attribute_offsets(source: bytes, start: int) -> dict[bytes, int]:
     """Return the offsets of the names of a tag's attributes, with their prefixes and without."""
     found = list(_ATTRIBUTE.finditer(source, start, tag_end(source, start)))
     bare = {it[2]: it.start(2) for it in found}

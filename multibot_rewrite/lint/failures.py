@@ -50,7 +50,7 @@ def failure(path: str, error: model.InputError, settings: Settings) -> Finding:
 
 
 def _level(path: str, cause: str, name: str) -> str:
-    """Return how bad a failure is that is no fault for certain; empty for the level of its rule."""
+    """Return the level of a failure that is no fault for certain; "" for the level of its rule."""
     if cause == model.FOR_ROS_1:  # as it should be in a package of ROS 1; elsewhere left over
         return NOTE if is_for_ros_1(path) else WARNING
     # SDF of before 1.3 is converted by libsdformat; a template may be fine when it is filled in.
@@ -99,6 +99,7 @@ def lost(path: str, died_of: int) -> Finding:
 
 
 def _crashed(path: str, message: str, hint: str) -> Finding:
+    """Return a finding of MB001 at the start of a file, which the cache does not keep."""
     unrepeatable()
     return Finding("MB001", ERROR, message, hint, path, 1, 1)
 

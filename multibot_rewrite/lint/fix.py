@@ -25,8 +25,7 @@ _LINE = re.compile(r"\bline \d+")
 
 
 def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Finding]]:
-    """Return the text with every safe fix applied, and the findings that are left. Raises
-    InputError if the file cannot be read, ProofError if the proof fails."""
+    """Return the fixed text and the findings that are left; raises InputError, ProofError."""
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
         found = {edit for it in findings if it.file == path for edit in it.edits}
@@ -55,22 +54,22 @@ def _verify(
     new: tuple[bytes, Sequence[Finding]],
     edits: Sequence[Edit],
 ) -> None:
-    """Check that every element without an edit in its tag or text is unchanged or, between versions
-    of URDF, that all say the same; and that no finding is new."""
+    """Raise ProofError unless all but the edited elements means the same, and no finding is new."""
     before, after = (read_document(data, path) for data, _ in (old, new))
     # For each element: is there an edit between its start tag and the next one?
     numbers = {bisect_right(before.starts, it.start) - 1 for it in edits}
     touched = [number in numbers for number in range(len(before.starts))]
     pairs = zip(before.root.iter("*"), after.root.iter("*"), touched, strict=False)
     same = len(before.starts) == len(after.starts)
-    alike = same and all(_same(old, new, there) for old, new, there in pairs)
+    alike = same and all(_is_alike(old, new, there) for old, new, there in pairs)
     if not alike and not same_meaning(before.root, after.root):
         raise ProofError(f"{path}: a fix would change more than it may")
     if more := _codes_and_messages(new[1]) - _codes_and_messages(old[1]):
         raise ProofError(f"{path}: a fix would cause a new finding: {min(more)}")
 
 
-def _same(old: _Element, new: _Element, touched: bool) -> bool:
+def _is_alike(old: _Element, new: _Element, touched: bool) -> bool:
+    """Return whether two elements are alike; of a ``touched`` one only the tag counts."""
     return old.tag == new.tag and (touched or (old.attrib, old.text) == (new.attrib, new.text))
 
 
@@ -126,13 +125,13 @@ def _half_spheres(link: _Element) -> Iterator[Meaning]:
     for shape, holder in capsules(link):
         pose = poses.pose_of(next(holder.iterchildren("origin"), None))
         length = number(shape.get("length"))
-        sphere = _plain("sphere", {"radius": shape.get("radius", "")})
+        sphere = _bare_element("sphere", {"radius": shape.get("radius", "")})
         materials = [_meaning(it) for it in holder.iterchildren("material")]
         for end in ends_of(pose, length) if pose and length else ():
-            origin = _plain("origin")._replace(numbers=(*end, *chain(*_IDENTITY)))
-            geometry = _plain("geometry")._replace(children=(sphere,))
-            yield _plain(str(holder.tag))._replace(children=(origin, geometry, *materials))
+            origin = _bare_element("origin")._replace(numbers=(*end, *chain(*_IDENTITY)))
+            geometry = _bare_element("geometry")._replace(children=(sphere,))
+            yield _bare_element(str(holder.tag))._replace(children=(origin, geometry, *materials))
 
 
-def _plain(tag: str, attributes: Mapping[str, str] | None = None) -> Meaning:
+def _bare_element(tag: str, attributes: Mapping[str, str] | None = None) -> Meaning:
     return Meaning(tag, attributes or {}, (), ("", ""), ())

@@ -11,8 +11,9 @@ from multibot_rewrite.rules.settings import Settings
 
 
 class Group(NamedTuple):
-    """The rules whose codes begin with ``start``, in a module or package of ``rules``; some are
-    ``of_urdf``, or all are for other files: then a lint of a URDF does not load them."""
+    """The rules whose codes begin with ``start``, in a module or package of ``rules``.
+
+    Some are ``of_urdf``, or all are for other files: then a lint of a URDF does not load them."""
 
     start: str
     module: str
@@ -42,8 +43,7 @@ def rules_of(group: Group, of_robots: bool = True) -> list[Rule]:
 
 
 def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:
-    """Return the rules that are on for a subject of that format, by their codes; none that find
-    nothing without robots if none are named."""
+    """Return the rules that are on for a format, by code; those of robots only if some are named."""
     levels = tuple(settings.levels.items())
     return _active_rules(settings.select, settings.ignore, levels, format_, bool(settings.robots))
 
@@ -56,6 +56,7 @@ def _active_rules(
     format_: str,
     of_robots: bool,
 ) -> tuple[Rule, ...]:
+    """Return ``active_rules`` for the parts of the settings that it needs, which can be cached."""
     settings = Settings(select=select, ignore=ignore, levels=dict(levels))
     groups = (it for it in GROUPS if it.of_urdf or format_ != URDF)
     rules = (it for group in groups for it in rules_of(group, of_robots) if format_ in it.formats)

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The descriptions and files that a launch file names -> what ``urdf-lint`` and ``build`` say of them;
-and what the lint finds in a description that robots run with -> what of it stops them.
+"""The descriptions and files of a launch file -> what stops the robots that run with them.
 
-A description that is put into a simulator is asked what a simulator leaves out of it as well. What is
-not read from a file of its own is told where the launch file has it.
-
-That is every error, and what Gazebo leaves out of a robot that runs in it. Where the description is
-only sent, nothing counts that only a simulator reads. The build and check-launch ask it."""
+That is every error, and what Gazebo leaves out of a robot that runs in it. Where a description is only
+sent, nothing counts that only a simulator reads. The build and check-launch ask for it. A finding in a
+text that has no file of its own is at its place in the launch file."""
 
 import os
 import re
@@ -47,30 +44,32 @@ _SHAPES = ("MB701", "MB703")
 
 
 def may_stop(rule: Rule) -> bool:
-    """Return whether a finding of the rule can be one of these."""
+    """Return whether a finding of the rule can stop a robot."""
     return rule.level == ERROR or rule.code in (*LEFT_OUT, *_NO_EFFECT)
 
 
 def in_use(found: Iterable[Finding], document: Document, simulated: bool) -> Iterator[Finding]:
     """Yield the findings that count for a robot with this document, with their level there."""
     for it in found:
-        level = _in_simulator(it) if simulated else _only_sent(it, document)
+        level = _level_in_simulator(it) if simulated else _level_if_sent(it, document)
         if level:
             yield it._replace(level=level)
 
 
 def is_of_simulator(it: Finding, document: Document) -> bool:
     """Return whether a finding is no error if the description is only sent."""
-    return _only_sent(it, document) != ERROR
+    return _level_if_sent(it, document) != ERROR
 
 
-def _in_simulator(it: Finding) -> str:
+def _level_in_simulator(it: Finding) -> str:
+    """Return the level of a finding about a robot in a simulator; "" if it does not count."""
     if it.level == ERROR:
         return WARNING if it.code in _SHAPES else ERROR
     return WARNING if it.level == WARNING and it.code in (*LEFT_OUT, *_NO_EFFECT) else ""
 
 
-def _only_sent(it: Finding, document: Document) -> str:
+def _level_if_sent(it: Finding, document: Document) -> str:
+    """Return the level of a finding about a description that is only sent; "" if it does not count."""
     if it.level != ERROR or it.code in LEFT_OUT or _is_below_gazebo(it, document):
         return ""
     return WARNING if it.code in (*_SHAPES, *_OF_SIMULATOR) else ERROR
@@ -94,7 +93,13 @@ _TEXT = re.compile(r"<\?xml|<robot|<sdf")
 
 def named_findings(launched: Launched) -> list[Finding]:
     """Return what is wrong with the files that a launch file names, each once."""
-    every = (_descriptions, _loaded_again, _parameters, _values, bridge_findings)
+    every = (
+        _in_descriptions,
+        _loaded_again,
+        _in_parameters,
+        _in_values,
+        bridge_findings,
+    )
     unread = {it.place for it in launched.graph.notes}
     nodes = (it for it in launched.nodes if it.place not in unread)
     # Reported once for all nodes, not in each file.
@@ -104,7 +109,8 @@ def named_findings(launched: Launched) -> list[Finding]:
     return [*dict.fromkeys(it for it in found if (it.code, it.hint) not in said), *lacking]
 
 
-def _descriptions(launched: Launched) -> Iterator[Finding]:
+def _in_descriptions(launched: Launched) -> Iterator[Finding]:
+    """Yield what stops the robots of the descriptions in a launch file."""
     for it in launched.models.found:
         file, data = file_of(launched.graph, it.text), it.text.encode()
         settings = Settings(distro=launched.release, ros=ROS_2, simulated=it.spawned)
@@ -132,7 +138,7 @@ def _at_launch(it: Finding, place: Place) -> Finding:
     return it._replace(message=message, file=place.file, line=place.line, column=1)
 
 
-def _parameters(launched: Launched) -> Iterator[Finding]:
+def _in_parameters(launched: Launched) -> Iterator[Finding]:
     """Yield errors and warnings in parameter files that exist as files."""
     texts = {
         it.file: it.text
@@ -147,7 +153,7 @@ def _parameters(launched: Launched) -> Iterator[Finding]:
             yield from (it for it in found if it.level != NOTE)
 
 
-def _values(launched: Launched) -> Iterator[Finding]:
+def _in_values(launched: Launched) -> Iterator[Finding]:
     """Yield what is wrong with the parameters that a launch file gives a node itself, at the node."""
     settings = Settings(select=_OF_VALUES, distro=launched.release, ros=ROS_2)
     nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.has_fact}
@@ -180,7 +186,7 @@ def _own_parameters(it: LaunchedNode) -> dict[str, object]:
 _CLOCK = bridges.GzTopic("gz.msgs.Clock", DIRECTIONS["in"])
 
 
-class _Told(NamedTuple):
+class _BridgeText(NamedTuple):
     """The rows of a bridge: of a file, or of its arguments, which are at a place."""
 
     file: str
@@ -192,11 +198,11 @@ class _Told(NamedTuple):
 def bridge_findings(launched: Launched) -> Iterator[Finding]:
     """Yield what is wrong with the rows of bridges, with all models that the launch file spawns."""
     models = launched.simulated
-    known = _topics(models) if models and not launched.models.lost else {}
-    for told in dict.fromkeys(it for node in launched.nodes for it in _told_texts(node)):
+    known = _simulator_topics(models) if models and not launched.models.lost else {}
+    for told in dict.fromkeys(it for node in launched.nodes for it in _bridge_texts(node)):
         # Names below the namespace of a bridge are not those of the file.
         mine = {} if told.expanded else known
-        for it in _of_bridge(told, launched.release, mine):
+        for it in _bridge_text_findings(told, launched.release, mine):
             # The description is the one that is spawned: the row does not work. What is not known may
             # send what one that stands in the launch file reads.
             at = told.place
@@ -205,17 +211,17 @@ def bridge_findings(launched: Launched) -> Iterator[Finding]:
             yield one if at == NOWHERE else one._replace(file=at.file, line=at.line, column=1)
 
 
-def _told_texts(it: Run) -> Iterator[_Told]:
+def _bridge_texts(it: Run) -> Iterator[_BridgeText]:
     given = it.values.get("config_file") if is_bridge(it) else None
     if given and os.path.isfile(str(given.value)):
         path = os.path.realpath(str(given.value))
-        yield _Told(path, read_file(path).decode("utf-8", "replace"), expands(it), NOWHERE)
+        yield _BridgeText(path, read_file(path).decode("utf-8", "replace"), expands(it), NOWHERE)
     if text := rows_in_arguments(it):
-        yield _Told(BRIDGE_FILE, text, expands(it), it.place)
+        yield _BridgeText(BRIDGE_FILE, text, expands(it), it.place)
 
 
-def _of_bridge(
-    told: _Told, release: str, known: Mapping[str, bridges.GzTopic]
+def _bridge_text_findings(
+    told: _BridgeText, release: str, known: Mapping[str, bridges.GzTopic]
 ) -> Iterable[Finding]:
     context = context_of({}, Settings(distro=release))
     try:
@@ -226,7 +232,7 @@ def _of_bridge(
     return judged(file, (bridges.no_gz_topic, bridges.not_converted, bridges.bridge_row))
 
 
-def _topics(models: Iterable[InSimulator]) -> dict[str, bridges.GzTopic]:
+def _simulator_topics(models: Iterable[InSimulator]) -> dict[str, bridges.GzTopic]:
     found = (it for model in models for it in model.topics)
     own = {f"/{it.gz.lstrip('/')}": bridges.GzTopic(it.gz_type, it.direction) for it in found}
     return {CLOCK: _CLOCK, **own}

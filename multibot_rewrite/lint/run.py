@@ -34,12 +34,13 @@ def lint_files(
     watch: Watch = iter,
     cache: Cache | None = None,
 ) -> list[Finding]:
-    """Return every finding of the files, each once, in the order of files and lines. ``jobs`` is
-    the number of processes, 0 for one on each processor it may use; ``watch`` wraps the iteration
-    over the files' findings, for a progress bar. With a ``cache`` only files are linted for which
-    something changed; the caller saves it."""
+    """Return every finding of the files, each once, in the order of files and lines.
+
+    ``jobs`` is the number of processes, 0 for one on each processor it may use; ``watch`` wraps the
+    iteration over the files' findings, for a progress bar. With a ``cache`` only files are linted for
+    which something changed; the caller saves it."""
     settings = among(paths, settings, cache)
-    found = {path: _known(cache, path, settings) for path in paths} if cache else {}
+    found = {path: _kept_findings(cache, path, settings) for path in paths} if cache else {}
     if unknown := [path for path in paths if found.get(path) is None]:
         # Plugin faulty definitions is reported before anything is linted.
         from multibot_rewrite.description.rewriters.tree import builtin_tree
@@ -53,7 +54,7 @@ def lint_files(
     return _in_order(_once(it for path in paths for it in found[path] or ()), paths)
 
 
-def _known(cache: Cache, path: str, settings: Settings) -> list[Finding] | None:
+def _kept_findings(cache: Cache, path: str, settings: Settings) -> list[Finding] | None:
     from multibot_rewrite.lint.cache.cache import findings_from
 
     return findings_from(cache.recall(_group(path), _key(path, settings)))
@@ -72,8 +73,7 @@ def _key(path: str, settings: Settings) -> str:
 
 
 def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) -> Settings:
-    """Return the settings for one of several files: what the others include, the URDFs of SRDFs,
-    and the arguments that xacro files know. A xacro file alone may be included in its package."""
+    """Return the settings for one of several files: includes, URDFs of SRDFs, xacro arguments."""
     if len(paths) == 1 and not paths[0].endswith(".xacro"):
         return settings
     from multibot_rewrite.lint.cache.cache import among_from, among_written
@@ -82,13 +82,13 @@ def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) 
     known = among_from(cache.recall(AMONG, key), settings) if cache else None
     if known is not None:
         return known
-    found, asked = _looked_through(paths, settings)
+    found, asked = _settings_of_files(paths, settings)
     if cache:
         cache.keep(AMONG, key, among_written(found), asked)
     return found
 
 
-def _looked_through(paths: Sequence[str], settings: Settings) -> tuple[Settings, Asked | None]:
+def _settings_of_files(paths: Sequence[str], settings: Settings) -> tuple[Settings, Asked | None]:
     """Return the settings, made in a worker if there are xacro files: these may take long."""
     from multibot_rewrite.lint.files.included import set_among
 
@@ -107,6 +107,7 @@ def _looked_through(paths: Sequence[str], settings: Settings) -> tuple[Settings,
 
 
 def _linted(paths: Sequence[str], settings: Settings, jobs: int, watch: Watch) -> Iterable[Linted]:
+    """Return findings and questions of each file, linted in workers if there are many or xacros."""
     from multibot_rewrite.lint.check import lint_file
 
     # What a few lines of xacro expand to may be more than a process survives.
@@ -141,6 +142,7 @@ def _once(found: Iterable[Finding]) -> list[Finding]:
 
 
 def _with_others(first: Finding, *others: Finding) -> Finding:
+    """Return the first of several findings at one place, whose hint counts the others."""
     if not others:
         return first
     also = f"and {len(others)} more from other calls of the macro"

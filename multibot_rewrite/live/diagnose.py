@@ -63,8 +63,10 @@ class Diagnosis(NamedTuple):
 def diagnose(
     graph: System, messages: Mapping[str, int] = NO_COUNTS, names: System | None = None
 ) -> Diagnosis:
-    """Look at a graph without comparing it with a plan; ``messages`` counts those of each topic, if
-    they were counted. Whose each name is says the plan ``names`` where there is one."""
+    """Return what a graph is by itself, and the findings about it.
+
+    ``messages`` counts those of each topic, if they were counted; the plan ``names`` says whose
+    names are."""
     robots = guess_robots(surely(graph))
     if names:
         robots = tuple(GuessedRobot(it.name, f"/{it.space}") for it in names.robots)
@@ -86,8 +88,7 @@ def diagnose(
 
 
 def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
-    """Return what is wrong in several ROS domains: in each by itself, and between their robots. The
-    robot of a domain without names is called by the domain's number."""
+    """Return what is wrong in several ROS domains: in each by itself, and between their robots."""
     views = {at: it.graph if it.robots else named(it.graph, at) for at, it in each.items()}
     together = diagnose(side_by_side(views))
     spaces = {at: "" if it.robots else space_of(at) for at, it in each.items()}
@@ -115,8 +116,7 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
 
 
 def _carried_across(each: Mapping[int, Diagnosis]) -> Iterator[Finding]:
-    """Yield commands of a robot's nodes, obeyed by its driver, that a node in two domains also
-    sends in the other one, where a driver obeys them as well: one sender drives two."""
+    """Yield commands of a robot that a node in two domains carries to another robot's driver."""
     pairs = ((at, other) for at in each for other in each if at != other)
     for at, other in pairs:
         for name, ends in each[at].whose.orders.items():
@@ -162,12 +162,12 @@ def survey(seen: Diagnosis) -> str:
         where = "their namespaces" if any(it.namespace for it in seen.robots) else where
         where = "the plan in its folder" if seen.whose.of_names.robots else where
         robots = f"{plural(len(names), 'robot')} by {where or 'the ends of names'}"
-        said = f"{robots}: {shorten(names, SEVERAL)}; layout: {_layout(seen)}"
+        said = f"{robots}: {shorten(names, SEVERAL)}; layout: {_layout_in_words(seen)}"
     return "; ".join((said, *_tf_topics(seen)))
 
 
 def _tf_topics(seen: Diagnosis) -> Iterator[str]:
-    """Yield the tf topics, with who sends on one that is not of a single robot."""
+    """Yield the tf topics, with the senders on each that is not of a single robot."""
     own, shared = [], []
     for topic, nodes in seen.tf:
         robots = unique(seen.whose.robot(node) or "no robot" for node in nodes)
@@ -184,7 +184,7 @@ def _tf_topics(seen: Diagnosis) -> Iterator[str]:
         yield f"{len(shared) - MOST_TOPICS} more tf topics that are not of one robot each"
 
 
-def _layout(seen: Diagnosis) -> str:
+def _layout_in_words(seen: Diagnosis) -> str:
     if seen.layout and seen.whose.of_names.robots:
         return seen.layout.name
     if seen.layout:

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A remap table -> stub nodes, in a graph of their own, and what is seen there. Each has the names
-of its node's code, rcl gets the remap rules.
+"""A remap table -> stub nodes, in a graph of their own, and what is seen there.
 
-A stub has the rules that reach its node in the table's release: a controller those that its manager
-hands on and those of its spawner, a component those of its container, a plugin those of its tag.
-Pure; ``graph.live.stub_nodes`` runs them. Parameters are taken to be set as the layout needs them,
-QoS is the default, and endpoints that depend on a condition are left out.
-"""
+Each has the names of its node's code, rcl gets the remap rules. A stub has the rules that reach its
+node in the table's release: a controller those that its manager hands on and those of its spawner, a
+component those of its container, a plugin those of its tag. Pure; ``graph.live.stub_nodes`` runs them.
+Parameters are taken to be set as the layout needs them, QoS is the default, and endpoints that depend
+on a condition are left out."""
 
 import json
 import os
@@ -22,7 +21,7 @@ from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.planning.of_runs import ACTION_PARTS
 from multibot_rewrite.planning.records import Rules, Run, Table
 from multibot_rewrite.planning.transforms import Edges
-from multibot_rewrite.planning.way_checks import bound_to, is_stand_in, running_nodes
+from multibot_rewrite.planning.way_checks import bound_to, is_controller_topic, running_nodes
 from multibot_rewrite.planning.ways import ros_arguments
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
 from multibot_rewrite.producers.ros.participants import participants_here
@@ -71,8 +70,10 @@ def played(
 
 
 def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> Iterator[Stub]:
-    """Yield the stub nodes. ``edges`` are by robot and node. Rules at one of the ways ``left_out``
-    are not given; without any a node gets only its namespace and its name."""
+    """Yield the stub nodes with their edges, which are given by robot and node.
+
+    Rules at one of the ways ``left_out`` are not given; without any a node gets only its namespace
+    and its name."""
     types = {name: end.type for _, end, name in table.ends if end.type}
     # What a node does that nobody knows is not played.
     names = lists_by_key(
@@ -89,7 +90,7 @@ def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> It
             # The code of a host that places the node itself (a costmap) asks nobody for either.
             space, other = f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
         ends = dict.fromkeys(_stub_endpoint(*it, types) for it in own)
-        arguments = tuple(ros_arguments(space, other, _rules(node, own)))
+        arguments = tuple(ros_arguments(space, other, _rules_with_handed_on(node, own)))
         stub = node._replace(arguments=arguments, names=tuple((it, "") for it in ends))
         yield stub, edges.get((node.robot, node.node), ())
 
@@ -124,9 +125,9 @@ def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
             yield played(node.name[1:], ends.get(node.name, ()), node.robot), ()
 
 
-def _rules(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
+def _rules_with_handed_on(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
     """Return the rules of a node; a controller manager that plays its controllers has theirs."""
-    theirs = {end.name for end, _ in names if is_stand_in(node, end)}
+    theirs = {end.name for end, _ in names if is_controller_topic(node, end)}
     if not theirs:
         return node.rules
     bare = bound_to(node, ())
@@ -136,6 +137,7 @@ def _rules(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
 
 
 def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoint:
+    """Return a stub's endpoint for one in the code; ``types`` are by name in the graph."""
     kind, role, own, type_, *_ = end
     # A topic without a role is nearly always a sensor's output.
     made = Endpoint(kind, role or PUBLISHES, own, type_ or types.get(name, ""))
@@ -143,8 +145,9 @@ def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoi
 
 
 def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
-    """Return the stub nodes by process: one process for each robot, but no more than PROCESSES. A
-    participant of DDS refuses a topic under a second type: a stub with another type is in another
+    """Return the stub nodes by process: one for each robot, but no more than PROCESSES.
+
+    A participant of DDS refuses a topic under a second type: a stub with another type is in another
     process."""
     processes: dict[int, list[Stub]] = defaultdict(list)
     process_of: dict[str, int] = {}
@@ -168,6 +171,7 @@ def with_substitutes(plan: System, replaced: Mapping[str, str]) -> System:
 
 
 def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
+    """Yield the ends that stand for a planned one where its type is replaced."""
     if planned.kind == ACTION and planned.type in replaced:
         action = Endpoint(planned.kind, planned.role, planned.name, planned.type)
         for kind, role, name, type_, *_ in action_parts(action):
@@ -179,8 +183,7 @@ def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
 
 
 def with_own_types(it: System, plan: System, replaced: Mapping[str, str]) -> System:
-    """Return what was seen, or ``with_substitutes``, with the types of the plan: with substitutes
-    all topics have one type. An end with another name than planned is found by its node's code."""
+    """Return a snapshot of stub nodes with the types of the plan in place of their substitutes."""
     types: dict[tuple[str, ...], str] = {(TOPIC, one.name): one.type for one in plan.topics}
     for end in plan.ends:
         last = end.code_name.rpartition("/")[2]
@@ -246,17 +249,15 @@ LOOKS = 3
 
 
 class Started(NamedTuple):
-    """What the stub nodes say of themselves: which types are replaced by which, the ends that they
-    have (node, role, name), and the frames that they send."""
+    """What stub nodes report: replaced types, their ends (node, role, name), the frames they send."""
 
     replaced: dict[str, str]
     ends: frozenset[tuple[str, str, str]]
     frames: frozenset[str]
 
 
-def stage(domain: int | None) -> dict[str, str]:
-    """Return an environment without other nodes: this machine only, the domain of the environment
-    if it is free, otherwise one that is hardly used."""
+def isolated_environment(domain: int | None) -> dict[str, str]:
+    """Return an environment for ROS on this machine alone, in a domain without other nodes."""
     environ = {k: v for k, v in os.environ.items() if k not in _ELSEWHERE}
     asked = settings(os.environ).domain if os.environ.get("ROS_DOMAIN_ID") else None
     free = asked is not None and participants_here(asked) == 0
@@ -265,9 +266,9 @@ def stage(domain: int | None) -> dict[str, str]:
     return {**environ, "ROS_DOMAIN_ID": str(own), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 
-def stages(domain: int | None, count: int) -> list[dict[str, str]]:
-    """Return so many environments as ``stage`` makes, each in a free domain of its own."""
-    first = stage(domain)
+def isolated_environments(domain: int | None, count: int) -> list[dict[str, str]]:
+    """Return so many environments as of ``isolated_environment``, each in a free domain of its own."""
+    first = isolated_environment(domain)
     numbers = [int(first["ROS_DOMAIN_ID"])]
     while len(numbers) < count:
         own = 1 + numbers[-1] % _DOMAINS
@@ -277,12 +278,13 @@ def stages(domain: int | None, count: int) -> list[dict[str, str]]:
     return [{**first, "ROS_DOMAIN_ID": str(it)} for it in numbers]
 
 
-def staged(
+def graph_of_stubs(
     nodes: Iterable[Stub], environ: Mapping[str, str], seconds: float
 ) -> tuple[System, dict[str, str]]:
-    """Return the graph of the stub nodes, and which types are replaced by which. On a busy machine
-    messages of the discovery are lost, so a snapshot that lacks what the nodes announce is taken
-    again. Raises Unusable where the nodes do not start or the graph is not read."""
+    """Return the graph of the stub nodes, and which types are replaced by which.
+
+    A snapshot that lacks what the nodes announce is taken again. Raises Unusable where the nodes do
+    not start or the graph is not read."""
     request = Request(seconds, substitutes=True)
     with _started(nodes, environ) as started:
         for _ in range(LOOKS):

@@ -21,7 +21,7 @@ NAMELESS = GuessedRobot("robot1", "")
 def seen_plan(seen: Diagnosis) -> System:
     """Return the plan: all nodes but tools, all names but what every node has."""
     nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
-    robots = {_mine(it): it for it in robots_to_plan(seen)}
+    robots = {_own_name(it): it for it in robots_to_plan(seen)}
     names = {mine: it.name for mine, it in robots.items()}
     whose = {node: seen.whose.robot(node) for node in nodes}
     ends = (it for it in seen.graph.ends if it.node in whose and "/_" not in it.name)
@@ -36,15 +36,17 @@ def seen_plan(seen: Diagnosis) -> System:
     return System(
         tuple(Node(it, robot=names.get(whose[it], "")) for it in nodes),
         tuple(dict.fromkeys(made)),
-        tuple(_from_world(seen)),
-        robots=tuple(_robot(seen, it) for mine, it in robots.items() if mine in whose.values()),
+        tuple(_edges_from_world(seen)),
+        robots=tuple(
+            _robot_record(seen, it) for mine, it in robots.items() if mine in whose.values()
+        ),
         layout=seen.layout.name if seen.layout else DEFAULT_LAYOUT,
         shared_topics=tuple(sorted({*bare, *EVERYBODYS})),
         shared_frames=tuple(sorted(WORLD_FRAMES)),
     )
 
 
-def _from_world(seen: Diagnosis) -> Iterator[Edge]:
+def _edges_from_world(seen: Diagnosis) -> Iterator[Edge]:
     """Yield the fixed transforms from a shared frame to robots, each with nodes of its robot."""
     for it in seen.graph.edges:
         robot = seen.whose.frame_robot(it.child)
@@ -58,15 +60,15 @@ def robots_to_plan(seen: Diagnosis) -> tuple[GuessedRobot, ...]:
     return tuple(it for it in seen.robots if not it.only_frames) or (NAMELESS,)
 
 
-def _mine(robot: GuessedRobot) -> str:
+def _own_name(robot: GuessedRobot) -> str:
     """Return the name of a guessed robot; empty where no name has a robot's."""
     return "" if robot is NAMELESS else robot.name
 
 
-def _robot(seen: Diagnosis, robot: GuessedRobot) -> Robot:
+def _robot_record(seen: Diagnosis, robot: GuessedRobot) -> Robot:
     """Return the robot's record; frames without a name are of the robot on whose topic they are."""
     whose = seen.whose
-    mine = _mine(robot)
+    mine = _own_name(robot)
     topics = [it for it in seen.tf if whose.robot(it[0]) == mine]
     shared = f"/{TF_TOPICS[0]}"
     # A base may send its own on a topic beside, from where a node sends it again (TurtleBot 4).

@@ -109,6 +109,7 @@ def _create_endpoint(
 
 @cache
 def _installed_class(type_: str) -> Any:
+    """Return the class of a message type; None if it is not installed."""
     return ros.message_class(type_)[0] if type_ else None
 
 
@@ -124,6 +125,7 @@ _CREATORS: dict[tuple[bool, str], Callable[[Any, Any, str], object]] = {
 def _create_publisher(
     stubs: _Stubs, node: Any, type_: Any, endpoint: Endpoint, edges: Iterable[Edge]
 ) -> Iterator[Publish]:
+    """Create a publisher; yields what has to be published again and again."""
     static = endpoint.name.rpartition("/")[2] == STATIC
     publisher = ros.publish(node, type_, endpoint.name, static)
     own = [edge for edge in edges if edge.static == static]

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is seen -> files to begin a fleet with: fleet file, nodes, description, plan. Pure.
-
-The description has the frames that were heard, and nothing else: it stands in for the robot's own.
-"""
+"""What is seen -> files to begin a fleet with: fleet file, nodes, description of frames, plan. Pure."""
 
 from __future__ import annotations
 
@@ -48,8 +45,8 @@ def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
     nodes = shown if robot.namespace or not mine else []
     learned = [it for it in nodes if not it.endswith(f"/{STATE_PUBLISHER}")]
     files = {
-        FLEET_FILE: HEAD + "".join(f"{it}\n" for it in _fleet(seen, nodes, bool(learned))),
-        DESCRIPTION: "".join(f"{it}\n" for it in _description(seen, robot)),
+        FLEET_FILE: HEAD + "".join(f"{it}\n" for it in _fleet_lines(seen, nodes, bool(learned))),
+        DESCRIPTION: "".join(f"{it}\n" for it in _description_lines(seen, robot)),
         PLAN_FILE: plan_to_yaml(seen_plan(seen)),
     }
     if learned:
@@ -58,7 +55,7 @@ def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
     return files
 
 
-def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str]:
+def _fleet_lines(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str]:
     robots = robots_to_plan(seen)
     namespaced = any(robot.namespace for robot in robots)
     fallback = LAYOUTS[0] if namespaced else LAYOUTS[-1]
@@ -81,8 +78,8 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
         yield f"  - {{name: {robot.name.replace('/', '_')}}}"
 
 
-def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
-    """Yield the frames of a robot below its base, as links and joints."""
+def _description_lines(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
+    """Yield the lines of a description with the frames of a robot below its base."""
     whose, plain = seen.whose, seen.whose.plain_frame
     # Those with the robot's name; where frames have none, those on its topic or on all.
     named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]

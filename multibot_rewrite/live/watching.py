@@ -29,7 +29,7 @@ _WORDS = {
 
 
 class Outcome(NamedTuple):
-    """The verdict as a command says it: in which ``words``, and who says it (``by``).
+    """The verdict as a command prints it: in which ``words``, and what judged (``by``).
 
     Without ``planned`` there was no plan to compare with. ``reasons`` say why it is not certain,
     besides the limitations of the graph."""
@@ -48,10 +48,7 @@ def verdict_words(
     planned: bool = True,
     gaps: Sequence[Finding] = (),
 ) -> str:
-    """Return the verdict in words, which say no more than was seen.
-
-    ``planned`` is whether there was a plan to compare with, ``gaps`` are the findings about that plan.
-    """
+    """Return the verdict in words, which say no more than was seen; ``gaps``: the plan's findings."""
     is_open = any(it.level != NOTE for it in gaps)
     words = _WORDS.get((verdict, planned)) or _WORDS[verdict, True]
     if verdict == Verdict.PLANNED and (levels := {it.level for it in findings}):
@@ -91,8 +88,7 @@ def judge(found: Iterable[Finding], graph: System) -> Verdict:
 def with_found(
     graph: System, held: Coverage, findings: Iterable[Finding], before: WatchState | None
 ) -> WatchState:
-    """Return the state of the graph with these findings, after the state before. What was missing
-    while the fleet started was never reported, so it is not solved either."""
+    """Return the state of the graph with these findings, after the state before."""
     found = tuple(findings)
     was_complete = before is not None and before.complete
     old = before.findings if before and was_complete else ()
@@ -103,11 +99,11 @@ def with_found(
     verdict = judge([it for it in found if complete or it.code not in ABSENCE], graph)
     changing = not complete or graph.environment.settled == CHANGING
     worst = max(worst, Verdict.PLANNED if verdict == Verdict.INCONCLUSIVE and changing else verdict)
-    appeared, solved = _not_in(old, found), _not_in(found, old)
+    appeared, solved = _new_findings(old, found), _new_findings(found, old)
     return WatchState(graph, found, held, appeared, solved, complete, judge(found, graph), worst)
 
 
-def _not_in(known: Iterable[Finding], found: Iterable[Finding]) -> tuple[Finding, ...]:
+def _new_findings(known: Iterable[Finding], found: Iterable[Finding]) -> tuple[Finding, ...]:
     """Return what is found and not known; a finding with another cause is the same finding."""
     before = {it._replace(hint="", file="", line=0) for it in known}
     return tuple(it for it in found if it._replace(hint="", file="", line=0) not in before)

@@ -31,6 +31,7 @@ def filters(scene: Scene) -> Iterator[str]:
 
 
 def _select(name: str, default: str, options: Iterable[tuple[str, str]]) -> str:
+    """Return a filter: a label with a choice, of which the ``default`` is none."""
     inner = "".join(f'<option value="{value}">{safe(text)}</option>' for value, text in options)
     first = f'<option value="">{default}</option>'
     return f'<label>{name} <select name="{name}">{first}{inner}</select></label> '
@@ -59,6 +60,7 @@ def finding_list(
 
 
 def _head(row: FindingRow, link: str) -> str:
+    """Return the line of a finding, which opens it."""
     finding = row.finding
     level = safe(finding.level)
     who = ", ".join(finding.robots or filter(None, (finding.robot,))) or ", ".join(row.robots)

@@ -29,6 +29,8 @@ class Tile(NamedTuple):
 
 
 class _Box(NamedTuple):
+    """Where a box is drawn, in pixels."""
+
     x: float
     y: float
     wide: float
@@ -38,15 +40,15 @@ class _Box(NamedTuple):
 def overview(robots: Sequence[Tile], crossings: Sequence[Crossing], shared: Iterable[str]) -> str:
     """Return the picture of the robots; ``shared`` are the nodes of no robot."""
     below = list(_shared_tiles(crossings, list(shared)))
-    in_row, _, tall, gap = _size(len(robots))
+    in_row, _, tall, gap = _grid_of(len(robots))
     middle = -(-len(robots) // in_row) * (tall + gap) if below else 0
-    places = {**_rows(robots, 0), **_rows(below, middle)}
+    places = {**_boxes_in_rows(robots, 0), **_boxes_in_rows(below, middle)}
     tiles = (*robots, *below)
     high = max((box.y + box.high for box in places.values()), default=0.0) + MARGIN
     arrows, labels = [], []
     for crossing in sorted(crossings, key=lambda crossing: crossing.state in FAULTY):
         start = places.get(crossing.source or crossing.node) or places[OTHERS]
-        path, x, y = _path(start, places[crossing.target or NO_ROBOT])
+        path, x, y = _arrow_path(start, places[crossing.target or NO_ROBOT])
         faulty, names = crossing.state in FAULTY, crossing.names
         css_class, tip = ("bad", "tip-bad") if faulty else ("calm", "tip")
         who = crossing.source or crossing.node
@@ -60,7 +62,7 @@ def overview(robots: Sequence[Tile], crossings: Sequence[Crossing], shared: Iter
             labels.append(f'<text class="reach-note" x="{x:g}" y="{y:g}">{text}</text>')
     # A few boxes are readable on a narrow screen.
     few = " few" if max(len(robots), len(below)) <= SIZES[0][0] else ""
-    boxes = (_tile(tile, places[tile.key]) for tile in tiles)
+    boxes = (_tile_svg(tile, places[tile.key]) for tile in tiles)
     return (
         f'<svg class="overview{few}" viewBox="0 0 {WIDTH} {high:g}" role="group"'
         ' aria-label="the fleet">'
@@ -89,12 +91,13 @@ def _shared_tiles(crossings: Sequence[Crossing], shared: Sequence[str]) -> Itera
         yield Tile(NO_ROBOT, NO_ROBOT, ", ".join(names), "#shared", "bad")
 
 
-def _size(number: int) -> tuple[int, int, int, int]:
+def _grid_of(number: int) -> tuple[int, int, int, int]:
+    """Return the columns, and width, height and gap of the boxes, for a number of robots."""
     return next(size[1:] for size in SIZES if number <= size[0])
 
 
-def _rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
-    columns, wide, high, gap = _size(len(tiles))
+def _boxes_in_rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
+    columns, wide, high, gap = _grid_of(len(tiles))
     cell = WIDTH / min(columns, max(len(tiles), 1))
     return {
         tile.key: _Box(
@@ -107,7 +110,7 @@ def _rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
     }
 
 
-def _tile(tile: Tile, box: _Box) -> str:
+def _tile_svg(tile: Tile, box: _Box) -> str:
     room = int((box.wide - 16) / LETTER)
     middle = f'x="{box.x + box.wide / 2:g}"'
     return (
@@ -121,7 +124,7 @@ def _tile(tile: Tile, box: _Box) -> str:
     )
 
 
-def _path(start: _Box, end: _Box) -> tuple[str, float, float]:
+def _arrow_path(start: _Box, end: _Box) -> tuple[str, float, float]:
     """Return a curve from box to box and its middle; the two directions do not overlap."""
     x, to_x = start.x + start.wide / 2 + 12, end.x + end.wide / 2 - 12
     if start.y == end.y:

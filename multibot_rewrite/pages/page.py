@@ -22,7 +22,7 @@ from multibot_rewrite.pages.page_sections import (
     MOST_DRAWN,
     SMALL_FLEET,
     PageSection,
-    look_of,
+    css_class_of,
     make_ids,
     make_sections,
     only_common,
@@ -41,8 +41,10 @@ NO_SNIPPETS: Mapping[str, Sequence[str]] = {}
 
 
 class Framed(NamedTuple):
-    """A page within the page: its HTML, and what its policy lets it use, which the outer one has to
-    allow too. W3C, Content Security Policy Level 3, 7.8: a frame of ``srcdoc`` inherits the policy."""
+    """A page within the page: its HTML, and what its policy lets it use.
+
+    The outer page has to allow that too. W3C, Content Security Policy Level 3, 7.8: a frame of
+    ``srcdoc`` inherits the policy."""
 
     html: str
     styles: str
@@ -56,7 +58,7 @@ def to_html(
     robots: Framed | None = None,
 ) -> bytes:
     """Return the page, with ``snippets`` of files by ``file:line``, and ``robots`` below its head."""
-    css, js = _asset("page.css"), _asset("page.js") + _asset("zoom.js")
+    css, js = _asset_text("page.css"), _asset_text("page.js") + _asset_text("zoom.js")
     # Nothing but what is in the page.
     style, script, images, frame = source_hash(css), source_hash(js), "", ""
     if robots is not None:
@@ -81,21 +83,21 @@ def to_html(
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<meta name="color-scheme" content="light dark">\n'
         f"<title>{safe(title)}</title>\n<style>{css}</style>\n</head>\n<body>\n",
-        *_header(scene, sections, rules),
+        *_header_html(scene, sections, rules),
         "<main>\n",
         frame,
         *filters(scene),
         *finding_list(scene, ids, sections, Sources(rules, snippets)),
         *(line for drawing in drawings for line in drawing),
         *explanations((row.finding.code for row in scene.rows), rules),
-        *_environment(scene),
+        *_environment_html(scene),
         f"</main>\n<script>{js}</script>\n</body>\n</html>\n",
     )
     return "".join(parts).encode()
 
 
 @cache
-def _asset(name: str) -> str:
+def _asset_text(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 
@@ -104,7 +106,7 @@ def source_hash(text: str) -> str:
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def _header(
+def _header_html(
     scene: Scene, sections: Sequence[PageSection], rules: Mapping[str, Rule]
 ) -> Iterator[str]:
     about = next((one.about for one in LAYOUTS if scene.layout in (one.name, one.short)), "")
@@ -134,7 +136,7 @@ def _header(
     yield "</header>\n"
 
 
-def _environment(scene: Scene) -> Iterator[str]:
+def _environment_html(scene: Scene) -> Iterator[str]:
     around = scene.environment
     why = "no more changes" if around.settled == QUIET else around.settled
     server = around.discovery_server or "none"
@@ -181,7 +183,7 @@ def graphs(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[
         nodes = plural(sum(node.robot == robot for node in section.group.nodes), "node")
         # Without findings of its own, only another robot's node makes a robot faulty.
         note = summarize(section.levels) or ("used by another robot" if section.faulty else nodes)
-        tiles.append(Tile(robot, robot, note, f"#{section.id}", look_of(section)))
+        tiles.append(Tile(robot, robot, note, f"#{section.id}", css_class_of(section)))
     shared = [node.name for node in sections[-1].group.nodes if not (node.robot or node.is_robot)]
     if scene.crossings:
         yield _pane(overview(tiles, scene.crossings, shared))
@@ -193,11 +195,11 @@ def graphs(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[
     hidden_ids = {section.id for section in hidden}
     for section in sections:
         if section.id not in hidden_ids:
-            yield from _group(section, scene, ids)
+            yield from _group_html(section, scene, ids)
     if hidden:
         title = f"{plural(len(hidden), 'more robot')} without findings"
         yield f'<details><summary class="good"><b>{title}</b></summary>\n<div>\n'
-        yield from (line for section in hidden for line in _group(section, scene, ids))
+        yield from (line for section in hidden for line in _group_html(section, scene, ids))
         yield "</div></details>\n"
     yield "</div>\n</section>\n"
 
@@ -217,7 +219,7 @@ def _legend(scene: Scene) -> Iterator[str]:
             yield f'<li class="{state}">{safe(meaning[state])}</li>'
 
 
-def _group(section: PageSection, scene: Scene, ids: Ids) -> Iterator[str]:
+def _group_html(section: PageSection, scene: Scene, ids: Ids) -> Iterator[str]:
     title = section.group.robot or "shared and others"
     nodes = plural(sum(not node.is_robot for node in section.group.nodes), "node")
     counts = f"{nodes}, {plural(len(section.group.names), 'name')}"
@@ -225,7 +227,7 @@ def _group(section: PageSection, scene: Scene, ids: Ids) -> Iterator[str]:
     opened = " open" if section.open else ""
     number = section.id[1:] if section.group.robot else "-1"
     yield f'<details class="group" id="{section.id}" data-robot="{number}"{opened}>'
-    yield f'<summary class="{look_of(section)}">'
+    yield f'<summary class="{css_class_of(section)}">'
     yield f"<b>{safe(title)}</b> <span>{counts}</span> <em>{findings}</em></summary>\n"
     yield from _alternatives(section, scene)
     if not section.drawn:
@@ -262,12 +264,12 @@ def trees(scene: Scene, ids: Ids) -> Iterator[str]:
         yield f"<h3>{safe(topic)} <span>and {safe(static)}</span></h3>\n"
         yield '<div class="trees">\n'
         for tree in found:
-            yield _panel(tree, scene, ids)
+            yield _tree_panel(tree, scene, ids)
         yield "</div>\n"
     yield "</section>\n"
 
 
-def _panel(tree: FrameTree, scene: Scene, ids: Ids) -> str:
+def _tree_panel(tree: FrameTree, scene: Scene, ids: Ids) -> str:
     frames = plural(len({row.frame for row in tree.rows}), "frame")
     wrong = any(row.faults for row in tree.rows)
     title = f"<b>{safe(tree.robot or 'no robot')}</b> <span>{frames}</span>"

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sections of the page and the robots at its head, groups with less in them, short ids, and the
-link of each finding."""
+"""The sections of the page, the robots at its head, short ids, and the link of each finding."""
 
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
@@ -55,6 +54,7 @@ def make_ids(scene: Scene) -> Ids:
 
 
 def _numbered(letter: str, things: Iterable[_Key]) -> dict[_Key, str]:
+    """Return a short id for each thing: the letter and its number."""
     return {thing: f"{letter}{at}" for at, thing in enumerate(things)}
 
 
@@ -69,8 +69,7 @@ def ids_of(about: Targets, ids: Ids) -> list[str]:
 
 
 def make_sections(scene: Scene) -> list[PageSection]:
-    """Return a section for each robot, then one for what belongs to no robot. Of robots with the
-    same findings the first is unfolded."""
+    """Return a section for each robot, the first of equal ones open, then one for no robot."""
     concerns = concerns_of(scene)
     met: set[tuple[int, ...]] = set()
     sections, left = [], MOST_OPEN
@@ -100,7 +99,7 @@ def concerns_of(scene: Scene) -> dict[str, tuple[int, ...]]:
     return {robot: tuple(rows) for robot, rows in found.items()}
 
 
-def look_of(section: PageSection) -> str:
+def css_class_of(section: PageSection) -> str:
     """Return the CSS class of a robot."""
     return "bad" if section.levels[ERROR] else "odd" if section.faulty else "good"
 
@@ -116,8 +115,10 @@ def ids_in(section: PageSection, ids: Ids) -> set[str]:
 def link_to(
     finding: Finding, targets: Iterable[str], sections: Mapping[str, tuple[str, set[str]]]
 ) -> str:
-    """Return the link to a finding: in its robot's section, or in another one. ``targets`` are the
-    ids of what it is about. ``sections`` has by robot the id of its section and the ids in it."""
+    """Return the link to a finding: in its robot's section, or in another one.
+
+    ``targets`` are the ids of what it is about. ``sections`` has by robot the id of its section and
+    the ids in it."""
     own = sections.get(finding.robot) or sections[""]
     for target in targets:
         if target.startswith("f"):
@@ -134,10 +135,7 @@ def summarize(levels: Mapping[str, int]) -> str:
 
 
 def without_common(group: DrawnGroup) -> DrawnGroup:
-    """Drop the endpoints that every node has (parameter services ...) unless they are faulty.
-
-    Those of a missing node are dropped as well.
-    """
+    """Return a group without the endpoints that every node has, unless they are faulty."""
     missing = {node.name for node in group.nodes if node.state == MISSING}
     edges = [
         edge
@@ -175,7 +173,7 @@ def _with_edges(group: DrawnGroup, edges: Iterable[DrawnEdge]) -> DrawnGroup:
 
 
 def _merge_unused_services(group: DrawnGroup) -> DrawnGroup:
-    """Draw a node's services without a client as one name, where there are several."""
+    """Return a group with one name for a node's services without a client, where there are several."""
     ends = lists_by_key(((edge.kind, edge.name), edge) for edge in group.edges)
     alone = (own[0] for own in ends.values() if len(own) == 1)
     unused = lists_by_key(
@@ -217,11 +215,13 @@ def robot_cards(
     cards = sorted(found, key=lambda card: not card.rows)
     order = {robot: at for at, robot in enumerate(scene.robots)}
     yield '<div class="cards" role="list" aria-label="robots">\n'
-    yield from (_html(card, scene, order, rules) for card in cards)
+    yield from (_card_html(card, scene, order, rules) for card in cards)
     yield "</div>\n"
 
 
-def _html(card: _Card, scene: Scene, order: Mapping[str, int], rules: Mapping[str, Rule]) -> str:
+def _card_html(
+    card: _Card, scene: Scene, order: Mapping[str, int], rules: Mapping[str, Rule]
+) -> str:
     numbers = " ".join(str(order.get(it.group.robot, -1)) for it in card.sections)
     links = [
         f'<a href="#{it.id}">{safe(it.group.robot or "shared, or of no robot")}</a>'
@@ -246,12 +246,12 @@ def _html(card: _Card, scene: Scene, order: Mapping[str, int], rules: Mapping[st
     if rest := lines[MOST_ROWS:]:
         listed += f"<details><summary>{len(rest)} more</summary><ul>{''.join(rest)}</ul></details>"
     return (
-        f'<div class="card {look_of(card.sections[0])}" role="listitem" data-robot="{numbers}">'
-        f"<h3>{head}</h3><p>{safe(_state(card, scene))}</p>{listed}</div>\n"
+        f'<div class="card {css_class_of(card.sections[0])}" role="listitem" data-robot="{numbers}">'
+        f"<h3>{head}</h3><p>{safe(_card_state(card, scene))}</p>{listed}</div>\n"
     )
 
 
-def _state(card: _Card, scene: Scene) -> str:
+def _card_state(card: _Card, scene: Scene) -> str:
     levels = Counter(scene.rows[at].finding.level for at in card.rows)
     sure = scene.outcome.planned and scene.outcome.verdict != Verdict.INCONCLUSIVE
     robots = {it.group.robot for it in card.sections}

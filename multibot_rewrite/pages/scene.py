@@ -66,10 +66,9 @@ class DrawnEdge(NamedTuple):
 
 
 class DrawnNode(NamedTuple):
-    """A node. With ``is_robot`` it stands for a whole robot, in the group of what is shared.
+    """A node; with ``is_robot`` it stands for a whole robot, in the group of what is shared.
 
-    ``is_tool`` nodes are neither planned nor in a finding.
-    """
+    ``is_tool`` nodes are neither planned nor in a finding."""
 
     name: str
     robot: str
@@ -102,8 +101,7 @@ class Crossing(NamedTuple):
     """What connects two groups: a node of robot ``source`` uses ``names`` of robot ``target``.
 
     Without ``source`` the node is ``node``, of no robot; without ``target`` the names are of no
-    robot.
-    """
+    robot."""
 
     source: str
     node: str
@@ -128,8 +126,7 @@ class FindingRow(NamedTuple):
 class Scene(NamedTuple):
     """All that is drawn; ``rows`` are the ``findings``, those of several robots as one.
 
-    Of each group of nodes in ``one_of`` one should run; those that do are ``running``.
-    """
+    Of each group of nodes in ``one_of`` one should run; those that do are ``running``."""
 
     outcome: Outcome
     layout: str
@@ -160,7 +157,7 @@ def make_scene(
     by_plan, seen = side_by_side(plan, graph)
     targets = find_targets(by_plan, seen, found)
     states = make_states(found, targets)
-    edges = sorted(_edges(by_plan, seen, states))
+    edges = sorted(_drawn_edges(by_plan, seen, states))
     missing = (node for node, state in states.nodes.items() if state == MISSING)
     every = {*seen.nodes, *missing, *(edge.node for edge in edges)}
     robot, shared = by_plan.of_names.robot, {*by_plan.own[""], *plan.shared_topics}
@@ -170,16 +167,16 @@ def make_scene(
             for its in (every, {edge.name for edge in edges})
         )
     )
-    nodes = _nodes(by_plan, seen, states, edges, robot_of)
+    nodes = _drawn_nodes(by_plan, seen, states, edges, robot_of)
     return Scene(
         outcome or Outcome(verdict, verdict_words(verdict, found, held)),
         plan.layout,
         tuple(robot.name for robot in plan.robots),
-        tuple(_groups(plan, edges, nodes, robot_of)),
+        tuple(_drawn_groups(plan, edges, nodes, robot_of)),
         tuple(_crossings(edges, robot_of)),
         make_frame_trees(by_plan, seen, states),
         tuple(found),
-        tuple(_rows(by_plan, dict(zip(found, targets, strict=True)))),
+        tuple(_finding_rows(by_plan, dict(zip(found, targets, strict=True)))),
         graph.environment,
         alternatives(plan),
         frozenset(seen.nodes),
@@ -187,7 +184,7 @@ def make_scene(
     )
 
 
-def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
+def _finding_rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
     each = with_members(targets, robot_words(plan.system))
     for finding, members in sorted(each, key=lambda it: _ORDER.index(it[0].level)):
         concerned = {robot for it in members for robot in robots_of(plan, it)}
@@ -201,7 +198,7 @@ def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRo
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
-def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
+def _drawn_edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
     """Yield the endpoints in the graph, and those that a finding reports as missing."""
     # One endpoint with a known type is enough.
     common_names = {
@@ -232,8 +229,7 @@ def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
 
 
 def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) -> bool:
-    """Return whether the plan has an endpoint of the graph, by itself or in another form. An action
-    may be planned as its parts. Helpers of a robot's nodes have what these have."""
+    """Return whether the plan has an endpoint of the graph, by itself or in another form."""
     node, kind, role, name = key
     if key in plan.by_key or node in plan.own[""] or (role, name) in bridged:
         return True
@@ -242,7 +238,7 @@ def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) 
     return is_tool(node) and bool(plan.robot(node))
 
 
-def _nodes(
+def _drawn_nodes(
     plan: Index, seen: Index, states: States, edges: Sequence[DrawnEdge], robot_of: _RobotOf
 ) -> dict[str, DrawnNode]:
     planned = {*plan.robot_of, *plan.own[""]}
@@ -263,7 +259,7 @@ def _nodes(
     return result
 
 
-def _groups(
+def _drawn_groups(
     plan: System, edges: Iterable[DrawnEdge], nodes: Mapping[str, DrawnNode], robot_of: _RobotOf
 ) -> Iterator[DrawnGroup]:
     """Yield a group for each robot and one for the rest; an edge between two robots is in both."""

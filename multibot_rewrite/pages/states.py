@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each finding is about, and the states of endpoints, nodes and frames that follow from it; and
-the tf trees of a graph as rows: a frame, its depth, and what is wrong with it."""
+"""What findings are about, the states that follow from it, and tf trees as rows of frames."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
@@ -41,10 +40,7 @@ def merged(targets: Iterable[Targets]) -> Targets:
 
 
 class States(NamedTuple):
-    """States by (node, name) and by node, and the codes of the findings about a frame.
-
-    ``names`` are all that findings are about.
-    """
+    """States by (node, name) and by node, codes by frame; ``names``: all that findings are about."""
 
     endpoints: Mapping[tuple[str, str], str]
     nodes: Mapping[str, str]
@@ -150,8 +146,7 @@ class FrameRow(NamedTuple):
 class FrameTree(NamedTuple):
     """One tree on ``topic`` and its tf_static.
 
-    Without ``received`` it has the frames of ``robot`` that are declared and were not received.
-    """
+    Without ``received`` it has the frames of ``robot`` that are declared and were not received."""
 
     topic: str
     robot: str
@@ -181,7 +176,7 @@ def make_frame_trees(plan: Index, seen: Index, states: States) -> tuple[FrameTre
         found += sorted(trees, key=lambda tree: order.get(tree.robot, len(order)))
         for robot in home:
             missing = [frame for frame in robot.frames if frame not in forest.robots]
-            faults = (_in_words(states.frames.get((topic, frame), ())) for frame in missing)
+            faults = (_rule_names(states.frames.get((topic, frame), ())) for frame in missing)
             lost = tuple(
                 FrameRow(frame, -1, 0, robot.name, MISSING, words, False, False)
                 for frame, words in zip(missing, faults, strict=True)
@@ -213,10 +208,10 @@ def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
         )
         for part in parts.values():
             seen.discard(root)
-            yield tuple(_rows(forest, states, root, part, seen))
+            yield tuple(_tree_rows(forest, states, root, part, seen))
 
 
-def _rows(
+def _tree_rows(
     forest: _Forest, states: States, root: str, first: Sequence[str], seen: set[str]
 ) -> Iterator[FrameRow]:
     """Yield rows depth first from ``root`` through the children ``first``, without recursion."""
@@ -231,7 +226,7 @@ def _rows(
             depth,
             forest.robots[frame],
             CLASH if codes else OK,
-            _in_words(codes),
+            _rule_names(codes),
             forest.static.get((parent, frame), False),
             repeated=frame in seen,
         )
@@ -242,5 +237,5 @@ def _rows(
         at += 1
 
 
-def _in_words(codes: Iterable[str]) -> tuple[str, ...]:
+def _rule_names(codes: Iterable[str]) -> tuple[str, ...]:
     return tuple(RULES[code].name.replace("-", " ") for code in codes)

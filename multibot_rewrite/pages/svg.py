@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """SVG of a group and of a tf tree, with places and states only; page.css has colours and styles.
-From left to right are publishers and servers, names, subscribers and clients.
 
-Lengths are pixels. Names and nodes are ordered by barycenters: each moves towards the middle of what
-it is connected to, which leaves few crossings. Faulty names are at the top.
-"""
+From left to right are publishers and servers, names, subscribers and clients. Lengths are pixels.
+Names and nodes are ordered by barycenters: each moves towards the middle of what it is connected to,
+which leaves few crossings. Faulty names are at the top."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -79,14 +78,14 @@ def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
             f'<text class="head" x="{x + wide / 2:g}" y="16">{text}</text>'
             for (x, wide), text in zip((LEFT, MIDDLE, RIGHT), COLUMN_TITLES, strict=True)
         ),
-        *_edges(group, place, ids),
-        *_boxes(group, place, ids, prefix),
+        *_edges_svg(group, place, ids),
+        *_boxes_svg(group, place, ids, prefix),
         "</svg>",
     ]
     return "".join(parts)
 
 
-def _edges(group: DrawnGroup, place: "GroupLayout", ids: Ids) -> Iterator[str]:
+def _edges_svg(group: DrawnGroup, place: "GroupLayout", ids: Ids) -> Iterator[str]:
     """Yield the edges, faulty ones last and so above the others."""
     left = {node.name: y for node, y in place.left}
     right = {node.name: y for node, y in place.right}
@@ -103,7 +102,7 @@ def _edges(group: DrawnGroup, place: "GroupLayout", ids: Ids) -> Iterator[str]:
         yield f'<path class="e {edge.state}" data-e="{joined}" d="{path}"/>'
 
 
-def _boxes(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> Iterator[str]:
+def _boxes_svg(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> Iterator[str]:
     drawn = set()
     sides = ((LEFT, place.left), (RIGHT, place.right))
     for (x, wide), node, y in ((column, *it) for column, things in sides for it in things):
@@ -116,13 +115,14 @@ def _boxes(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> It
             f'<g class="n {node.state}{foreign}"{own}>'
             f'<rect x="{x}" y="{y - NODE_HIGH / 2:g}" width="{wide}" height="{NODE_HIGH}" rx="5"/>'
             f'<text x="{x + 9}" y="{y + 4:g}">{label}</text>'
-            f"{tooltip(node.name, _meaning(node.state))}</g>"
+            f"{tooltip(node.name, _state_meaning(node.state))}</g>"
         )
     for name, y in place.names:
         yield _name_box(name, group.robot, y, _id_attributes(ids.names.get(name.name), ids, prefix))
 
 
 def _id_attributes(id_: str | None, ids: Ids, prefix: str) -> str:
+    """Return the attributes by which the script finds a thing; ``prefix`` is that of an anchor."""
     if id_ is None:
         return ""
     anchor = f' id="{prefix}{id_}"' if prefix and id_ in ids.anchors else ""
@@ -140,7 +140,7 @@ def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     )
     shape = "2" if badge else f"{NAME_HIGH / 2:g}"
     end = f'<text class="badge" x="{x + wide - 7}" y="{y + 4:g}">{badge}</text>' if badge else ""
-    about = (f"{name.kind} {name.name}", " and ".join(name.types), _meaning(name.state))
+    about = (f"{name.kind} {name.name}", " and ".join(name.types), _state_meaning(name.state))
     return (
         f'<g class="t {name.state}"{id_attributes}>'
         f'<rect x="{x}" y="{y - NAME_HIGH / 2:g}" width="{wide}" height="{NAME_HIGH}"'
@@ -149,14 +149,14 @@ def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     )
 
 
-def _meaning(state: str) -> str:
+def _state_meaning(state: str) -> str:
     return "" if state == OK else MEANINGS[state]
 
 
-def _label(name: str, robot: str, room: float) -> str:
-    """Return a name cut to ``room`` pixels, with the robot's name in it dimmed."""
+def _label(name: str, robot: str, width: float) -> str:
+    """Return a name cut to ``width`` pixels, with the robot's name in it dimmed."""
     text = visible(name)
-    spaces = int(room / LETTER)
+    spaces = int(width / LETTER)
     for own in (f"/{robot}", f"_{robot}"):
         if robot and text.startswith(f"{own}/") and own[0] == "/":
             rest = clipped(text[len(own) :], spaces - columns(own))
@@ -206,12 +206,12 @@ def visible(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def clipped(text: str, room: int) -> str:
-    """Return ``text`` in at most ``room`` columns, cut in the middle: names differ at their ends."""
-    if len(text) * 2 <= room or columns(text) <= room:
+def clipped(text: str, width: int) -> str:
+    """Return ``text`` in at most ``width`` columns, cut in the middle: names differ at their ends."""
+    if len(text) * 2 <= width or columns(text) <= width:
         return text
-    back = _fitting(text[::-1], room // 2)[::-1]
-    return f"{_fitting(text, room - 1 - columns(back))}…{back}"
+    back = _fitting(text[::-1], width // 2)[::-1]
+    return f"{_fitting(text, width - 1 - columns(back))}…{back}"
 
 
 def columns(text: str) -> int:
@@ -221,12 +221,12 @@ def columns(text: str) -> int:
     return sum(2 if east_asian_width(c) in "WF" else 1 for c in text)
 
 
-def _fitting(text: str, room: int) -> str:
-    """Return the longest beginning of ``text`` that fits into ``room`` columns."""
+def _fitting(text: str, width: int) -> str:
+    """Return the longest beginning of ``text`` that fits into ``width`` columns."""
     at = 0
-    while at < len(text) and room > 0:
-        room -= columns(text[at])
-        at += room >= 0
+    while at < len(text) and width > 0:
+        width -= columns(text[at])
+        at += width >= 0
     return text[:at]
 
 
@@ -236,10 +236,7 @@ OFFERING = (PUBLISHES, SERVES)
 
 
 class GroupLayout(NamedTuple):
-    """The nodes and names of each column with their vertical middle, and the total height.
-
-    A node that offers and uses names is in both columns.
-    """
+    """The nodes and names of each column with their vertical middle, and the total height."""
 
     left: tuple[tuple[DrawnNode, float], ...]
     names: tuple[tuple[DrawnName, float], ...]
@@ -293,14 +290,14 @@ def _ordered_names(
         pulls: dict[_NameKey, list[float]] = defaultdict(list)
         for side in (offers, uses):
             for keys in side.values():
-                middle = _middle([rank[key] for key in keys])
+                middle = _mean([rank[key] for key in keys])
                 for key in keys:
                     pulls[key].append(middle)
-        names.sort(key=lambda key: (severity[key], _middle(pulls[key]), key))
+        names.sort(key=lambda key: (severity[key], _mean(pulls[key]), key))
     return names
 
 
-def _middle(values: Sequence[float]) -> float:
+def _mean(values: Sequence[float]) -> float:
     return sum(values) / len(values) if values else 0.0
 
 
@@ -308,7 +305,7 @@ def _column(
     joined: Mapping[str, Sequence[_NameKey]], at: Mapping[_NameKey, float], height: float
 ) -> dict[str, float]:
     """Return each node at the middle of its names, moved where two would overlap."""
-    wish = {node: _middle([at[key] for key in keys]) for node, keys in joined.items()}
+    wish = {node: _mean([at[key] for key in keys]) for node, keys in joined.items()}
     order = sorted(wish, key=lambda node: (wish[node], node))
     places: dict[str, float] = {}
     low = -NODE_ROW / 2

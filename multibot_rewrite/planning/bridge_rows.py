@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The topics that sensors and systems of gz-sim have, as ``bridge.yaml`` lists them: which of them a
-description has in a release, and their names in Gazebo.
+"""The topics of sensors and systems of gz-sim in a release, by ``bridge.yaml``, with their gz names.
 
-Source: gazebosim/gz-sim src/systems, as the data says; transport::TopicUtils::AsValidTopic.
-"""
+Source: gazebosim/gz-sim src/systems, as the data says; transport::TopicUtils::AsValidTopic."""
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
@@ -69,7 +67,7 @@ def rows_of(kind: str, name: str, release: str) -> tuple[BridgeRow, ...]:
 
 
 def is_there(row: BridgeRow, host: _Element) -> bool:
-    """Tell whether the parameters of a sensor or plugin are those that have this topic."""
+    """Return whether a sensor or plugin has this topic, by its parameters."""
     there = all(next(values_at(host, it), None) is not None for it in row.needs.split())
     return there and (not row.when or holds(host, row.when))
 
@@ -82,10 +80,9 @@ def given_topic(row: BridgeRow, plugin: _Element, release: str) -> str:
 
 
 def default_topics(row: BridgeRow, plugin: _Element, model: str) -> Iterator[tuple[str, str]]:
-    """Return the default topics, each with what is below the model or its namespace.
+    """Yield the default topics, each with what is below the model or its namespace.
 
-    There are several where an element is repeated, and none where one is missing.
-    """
+    There are several where an element is repeated, and none where one is missing."""
     above, slash, below = (row.default + row.ending).partition("}/")
     # Once for each choice of values for its slots.
     parts = _SLOT.split(f"{above}{slash}{_HERE}{below}")

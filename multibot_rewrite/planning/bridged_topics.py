@@ -59,8 +59,7 @@ _NOT_ROS, _NUMBER = lazy_compile(r"[^A-Za-z0-9_/]"), lazy_compile(r"(?:^|/)(?=[0
 
 
 class BridgedTopic(NamedTuple):
-    """One topic of the bridge; ``robot`` is empty if it is bridged once for all robots. ``is_free`` is
-    true where the description does not say its name in ROS."""
+    """One topic of the bridge, for all without a ``robot``; ``is_free``: its ROS name is not given."""
 
     robot: str
     ros: str
@@ -111,19 +110,18 @@ def bridged_topics(
     ]
     left: list[UnbridgedTopic] = []
     for robot, inventory in inventories.items():
-        tf = _tf_name(robot, naming) if robot in placed else ""
+        tf = _tf_topic(robot, naming) if robot in placed else ""
         for item in _robot_topics(inventory, robot, models.get(robot, robot), naming):
             if isinstance(item, BridgedTopic) and item.ros == tf:
                 continue
             (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
     ends = lists_by_key((run.robot, it) for run in runs for it in run.names if not it[0].when)
-    fitting = [_fitting(it, ends[it.robot]) for it in dict.fromkeys(bridged)]
+    fitting = [_fitted_to_nodes(it, ends[it.robot]) for it in dict.fromkeys(bridged)]
     return fitting, list(dict.fromkeys(left))
 
 
-def _fitting(topic: BridgedTopic, ends: Sequence[tuple[Endpoint, str]]) -> BridgedTopic:
-    """Return the topic with the name and type that the nodes at its end have, where the bridge can
-    convert that type; ``ends`` are those of its robot."""
+def _fitted_to_nodes(topic: BridgedTopic, ends: Sequence[tuple[Endpoint, str]]) -> BridgedTopic:
+    """Return the topic with the name and convertible type that the nodes at its end have."""
     role = SUBSCRIBES if topic.direction == DIRECTIONS["in"] else PUBLISHES
     sides = [it for it in ends if it[0].role == role]
     if topic.is_free and all(name != topic.ros for _, name in sides):
@@ -159,6 +157,7 @@ def is_for_classic(inventory: Inventory) -> bool:
 
 
 def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) -> Iterator[Found]:
+    """Yield the topics of a robot's sensors and plugins, bridged or not."""
     elsewhere = OF_BOTH if is_for_classic(inventory) else ()
     for sensor in inventory.document.root.iter("sensor"):
         if sensor.get("type") not in elsewhere:
@@ -169,11 +168,11 @@ def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) 
     row_of: dict[str, BridgedTopic] = {}
     for topic in (it for plugin in plugins for it in plugin.topics):
         gz_of[topic.ros].add(topic.gz)
-        if topic.gz not in row_of or topic.ros == _tf_name(robot, naming):
+        if topic.gz not in row_of or topic.ros == _tf_topic(robot, naming):
             row_of[topic.gz] = topic
     for topic in row_of.values():
         below = topic.gz.lstrip("/").removeprefix("model/")
-        is_default = topic.ros not in (_ros_name(topic.gz), _tf_name(robot, naming))
+        is_default = topic.ros not in (_ros_name(topic.gz), _tf_topic(robot, naming))
         # Only a system's namespace in Gazebo tells it from another one of the robot.
         if is_default and not below.startswith(f"{model}/") and len(gz_of[topic.ros]) > 1:
             yield topic._replace(ros=_robot_name(below, robot, naming))
@@ -235,7 +234,7 @@ def _topics_of_sensor(sensor: etree._Element, robot: str, release: str) -> Itera
                 robot, "sensor", _line(sensor), what, why, OF_ANOTHER, name, row.gz_type
             )
         else:
-            yield _bridged(row, robot, _ros_name(name), name)
+            yield _bridged_topic(row, robot, _ros_name(name), name)
     if any(row.gz_type == IMAGE for row in rows):
         beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
         own = text_at(sensor, "camera/camera_info_topic") if sensor.get("type") == "camera" else ""
@@ -252,7 +251,7 @@ def _why_not(row: BridgeRow, release: str) -> str:
     return row.why or ("" if row.ros_type else unknown)
 
 
-def _bridged(row: BridgeRow, robot: str, ros: str, gz: str) -> BridgedTopic:
+def _bridged_topic(row: BridgeRow, robot: str, ros: str, gz: str) -> BridgedTopic:
     return BridgedTopic(robot, ros, gz, row.ros_type, row.gz_type, DIRECTIONS[row.way])
 
 
@@ -265,6 +264,7 @@ def _plugin(
     space: str | None,
     release: str,
 ) -> Iterator[Found]:
+    """Yield the topics of a plugin by a row of the data, bridged or not."""
     given = given_topic(row, plugin, release)
     names: Iterable[tuple[str, str]] = [(given, "")]
     if space != "" and not given.startswith("/"):
@@ -283,11 +283,11 @@ def _plugin(
             continue
         # The robot's own, of what stands below its model, or that of the file.
         ros = _robot_name(rest, robot, naming) if rest else _ros_name(name)
-        ros = _tf_name(robot, naming) if row.element == TF_ELEMENT else ros
+        ros = _tf_topic(robot, naming) if row.element == TF_ELEMENT else ros
         # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
         is_free = bool(rest) and row.element != TF_ELEMENT
-        yield _bridged(row, whose, ros, name)._replace(is_free=is_free)
+        yield _bridged_topic(row, whose, ros, name)._replace(is_free=is_free)
 
 
 def _of_unknown_type(
@@ -310,21 +310,22 @@ def _line(element: etree._Element) -> int:
 
 def _ros_name(name: str) -> str:
     """Return the ROS name of a gz topic, which has no namespace: its name is the full name."""
-    return f"/{_as_ros(name.lstrip('/'))}"
+    return f"/{_ros_characters(name.lstrip('/'))}"
 
 
-def _as_ros(name: str) -> str:
+def _ros_characters(name: str) -> str:
+    """Return a name with ``_`` for characters that ROS does not allow."""
     return _NUMBER.sub("_", _NOT_ROS.sub("_", name))
 
 
-def _tf_name(robot: str, naming: Naming) -> str:
+def _tf_topic(robot: str, naming: Naming) -> str:
     tf = TF_TOPICS[0]
     return _robot_name(tf, robot, naming) if naming.layout.tf_per_robot else f"/{tf}"
 
 
 def _robot_name(name: str, robot: str, naming: Naming) -> str:
     """Return a name as the robot's own topic, with the characters that ROS allows."""
-    name = _as_ros(name)
+    name = _ros_characters(name)
     if naming.topics == NAMESPACE:
         return f"/{robot}/{name}"
     return spelled(naming, robot, "topic", f"/{name}")
@@ -348,14 +349,14 @@ _ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,)}
 
 
 def bridged_as(topics: Iterable[BridgedTopic]) -> tuple[Topic, ...]:
-    """Return the topics that descriptions have, each once."""
+    """Return the bridged topics as records of a plan, each once."""
     return once(
         Topic(it.ros, bridge=_ROLES.get(it.direction, BOTH), type=it.ros_type) for it in topics
     )
 
 
 def once(topics: Iterable[Topic]) -> tuple[Topic, ...]:
-    """Return each topic once, with all that a bridge does with it."""
+    """Return each topic once, with all directions in which a bridge passes it on."""
     found: dict[str, Topic] = {}
     for topic in topics:
         first = found.setdefault(topic.name, topic)

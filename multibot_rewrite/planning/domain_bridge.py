@@ -83,12 +83,12 @@ def beyond(plan: System) -> dict[str, str]:
 def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
     """Return the topics that a node reads and no node of its domain sends, and those requested."""
     numbers = domain_of(plan)
-    found = [*_needed(surely(plan), numbers), *_crossings(plan, numbers, given)]
+    found = [*_needed_crossings(surely(plan), numbers), *_requested_crossings(plan, numbers, given)]
     return sorted(dict.fromkeys(found))
 
 
-def _needed(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
-    robot_of = _robots(plan)
+def _needed_crossings(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
+    robot_of = _robot_by_node(plan)
     ends: dict[tuple[str, str], dict[str, End]] = defaultdict(dict)
     for it in plan.ends:
         if it.kind == TOPIC and it.name not in SENT_BY_EVERY_NODE:
@@ -106,15 +106,15 @@ def _needed(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
         yield from (Crossing(it, CLOCK, CLOCK_TYPE, False) for it in apart)
 
 
-def _robots(plan: System) -> Mapping[str, str]:
+def _robot_by_node(plan: System) -> Mapping[str, str]:
     """Return the robot of each node; empty for a node of all robots, and for nodes that it makes."""
     return defaultdict(str, {it.name: it.robot for it in plan.nodes})
 
 
-def _crossings(
+def _requested_crossings(
     plan: System, numbers: Mapping[str, int], given: Sequence[str]
 ) -> Iterator[Crossing]:
-    robot_of = _robots(plan)
+    robot_of = _robot_by_node(plan)
     known: dict[str, dict[str, Crossing]] = defaultdict(dict)
     sent = {(robot_of[it.node], it.name) for it in plan.ends if it.role == PUBLISHES}
     for it in plan.ends:
@@ -137,7 +137,7 @@ def _crossings(
 def services_apart(plan: System) -> Iterator[tuple[End, int, int]]:
     """Yield services and actions called in one domain and served only in another, with both."""
     numbers = domain_of(plan)
-    robot_of = _robots(plan)
+    robot_of = _robot_by_node(plan)
     served: dict[tuple[str, str], set[int]] = defaultdict(set)
     ends = surely(plan).ends if numbers else ()
     for it in ends:

@@ -68,8 +68,7 @@ def enclave_of(robot: str) -> str:
 
 
 def to_policy(plan: System, more: Iterable[End] = ()) -> str:
-    """Return the policy file of a fleet. ``more`` are endpoints that nodes may have besides those of
-    the plan, by parameter: a policy that lacks them would stop these nodes."""
+    """Return the policy file of a fleet; ``more`` is what nodes may have besides, by parameter."""
     from xml.sax.saxutils import escape, quoteattr  # takes half as long to import as a check does
 
     lines = [f'<policy version="{VERSION}">', "  <enclaves>"]
@@ -97,17 +96,17 @@ def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profi
     for robot in plan.robots:
         tf = [(TOPIC, SUBSCRIBES, f"{robot.tf_topic}{end}") for end in ("", "_static")]
         listener = Profile(f"/{robot.space}/*", tuple(tf))
-        own = (_profile(node, allowed[node]) for node in nodes[robot.name])
+        own = (_profile_with_common_rights(node, allowed[node]) for node in nodes[robot.name])
         result[enclave_of(robot.name)] = (*own, listener)
-    shared = tuple(_profile(node, allowed[node]) for node in nodes[""])
+    shared = tuple(_profile_with_common_rights(node, allowed[node]) for node in nodes[""])
     # Tools read and call everything; they send what robots read and no planned node sends.
     sides = sets_by_key((end.role, end.name) for end in ends if end.kind == TOPIC)
     open_ = sorted(sides[SUBSCRIBES] - sides[PUBLISHES])
     every = ((TOPIC, SUBSCRIBES, "/*"), (SERVICE, CALLS, "/*"), (ACTION, CALLS, "/*"))
     tools = Profile("/tools", (*every, *((TOPIC, PUBLISHES, name) for name in open_)))
-    others = (_profile(f"/{pattern}", ()) for pattern in tool_patterns())
+    others = (_profile_with_common_rights(f"/{pattern}", ()) for pattern in tool_patterns())
     return {**result, **({SHARED: shared} if shared else {}), TOOLS: (tools, *others)}
 
 
-def _profile(node: str, own: Iterable[Allowed]) -> Profile:
+def _profile_with_common_rights(node: str, own: Iterable[Allowed]) -> Profile:
     return Profile(node, tuple(sorted({*_OF_EVERY_NODE, *own})))

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a node as it runs is called, and its topics and services: the target of its rule, the names
-that rcl makes of its rules, its ends, and what it asks of tf."""
+"""What a node as it runs is called, its topics and services under its rules, and its tf lookups."""
 
 from __future__ import annotations
 
@@ -25,7 +24,7 @@ _OF_ROBOTS = frozenset(USUAL_FRAMES) - frozenset(WORLD_FRAMES)
 
 
 def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
-    """Return the rules as rcl reads them."""
+    """Return remap rules as rcl parses them."""
     found = (parse_remap(f"{source}:={target}") for source, target in rules)
     return tuple(rule for rule in found if rule is not None)
 
@@ -46,8 +45,7 @@ def with_names(run: Run) -> Run:
 
 
 def name_made_of_other_end(end: Endpoint, bound: BoundNode) -> str:
-    """Return the name that its node asks for: it is made of the one that another end has after all
-    rules (image_transport camera_common.cpp getCameraInfoTopic)."""
+    """Return the name that a node makes of another end's (camera_common.cpp getCameraInfoTopic)."""
     return sibling(resolve_bound(end.beside, end.kind, bound), end.name)
 
 
@@ -58,12 +56,12 @@ def asked_alone(node: NodeFacts, end: Endpoint) -> str:
 
 
 def sibling(other: str, name: str) -> str:
-    """Return a name with its last word next to another name."""
+    """Return a name with its last segment next to another name."""
     return f"{other[: other.rfind('/') + 1]}{name.rpartition('/')[2]}"
 
 
 def _name_of(run: Run, end: Endpoint, bound: BoundNode) -> str:
-    """Return the name of an end."""
+    """Return the full name of an end under the rules."""
     if end.beside:
         return resolve_bound(name_made_of_other_end(end, bound), end.kind, bound)
     name = end.name
@@ -107,8 +105,7 @@ def each_once(ends: Iterable[End]) -> Iterator[End]:
 
 
 def lookups_of(run: Run, prefix: str = "") -> Iterator[Lookup]:
-    """Yield the frames that a node reads by its parameters and does not send; by default the usual ones
-    of a robot. The node puts ``prefix`` before each."""
+    """Yield frames that a node reads, by parameter or usual default, and does not send."""
     own = {name for it in run.fact.sends for name in it[:2]}
     for it in (frame for frame in run.fact.frames if frame.parameter not in own):
         found = run.values.get(it.parameter)
@@ -138,11 +135,9 @@ def placed(robot: str, node: str, naming: Naming, apart: bool = False) -> tuple[
 
 
 def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
-    """Yield the names that rcl sees for an endpoint, with their kinds: an action is services and
-    topics.
+    """Yield the names that rcl sees for an endpoint, with their kinds; none for one made at run time.
 
-    A name in ``<>`` is made at run time, so it yields none.
-    """
+    An action is services and topics."""
     name = endpoint.name
     if "<" in name:
         return

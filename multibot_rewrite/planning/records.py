@@ -29,10 +29,9 @@ NOTHING: Mapping[str, Given] = {}
 
 
 class Run(NamedTuple):
-    """A node as it runs: its robot (empty for a node of all robots, or where that is not known),
-    its name in its node set or in its code, its namespace and name, its remap rules in the order in
-    which rcl takes them, and what is known of it with its parameters.
+    """A node as it runs: its names, remap rules as rcl takes them, parameters, what is known of it.
 
+    ``robot`` is empty for a node of all robots, or if not known, ``node`` its name in a node set.
     ``written`` is true for a plugin of a description, ``process_wide`` if its rules hold for its
     whole process. ``names`` are its ends with their names under the rules, ``host_name`` is what
     the node is called whose process it is in. ``process`` tells the processes apart; helper nodes
@@ -82,12 +81,12 @@ class Run(NamedTuple):
 
     @property
     def other_name(self) -> str:
-        """Its name if it is another than that in its code, else empty."""
+        """Its name, if that is not the one in its code; otherwise empty."""
         return self.name if self.name != self.code_name else ""
 
     @property
     def has_fact(self) -> bool:
-        """Return whether it is known what it does."""
+        """Return whether anything is known of what it does."""
         return self.fact.is_known
 
     @property

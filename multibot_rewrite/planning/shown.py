@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a viewer can show of each robot of a plan: topics, description, the frame it is in; a
-layout of Foxglove that shows it."""
+"""What a viewer can show of each robot of a plan, and a layout of Foxglove that shows it."""
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -45,7 +44,7 @@ class Shown(NamedTuple):
         return [name for name, type_ in self.sent.items() if type_ in some]
 
     def clicked(self, word: str) -> str:
-        """Return the topic of this name that it reads, or ""."""
+        """Return the topic with this last word, such as ``initialpose``, that it reads; or ""."""
         return next((it for it in self.read if self.is_called(it, word)), "")
 
     def is_called(self, topic: str, word: str) -> bool:
@@ -55,22 +54,22 @@ class Shown(NamedTuple):
 
 
 def shown_by_robot(plan: System) -> tuple[list[Shown], Shown]:
-    """Return every robot, and what is of all robots."""
+    """Return what can be shown of every robot, and what all robots share."""
     every = {it.name: Shown(it, {}, {}) for it in (Robot(""), *plan.robots)}
     whose = whose_by_plan(plan).robot
     owners = {it.name: it.robot for it in plan.nodes}
     for end in plan.ends:
         if end.kind == TOPIC and end.sure == RUNS:
-            _add(every.get(owners.get(end.node, "")), end.role, end.name, end.type)
+            _add_topic(every.get(owners.get(end.node, "")), end.role, end.name, end.type)
     for topic in plan.topics:
         owner = whose(topic.name)
         for role in topic.bridge if owner else ():
-            _add(every[owner], role, topic.name, topic.type)
+            _add_topic(every[owner], role, topic.name, topic.type)
     shared = every.pop("")
     return list(every.values()), shared
 
 
-def _add(shown: Shown | None, role: str, topic: str, type_: str) -> None:
+def _add_topic(shown: Shown | None, role: str, topic: str, type_: str) -> None:
     if shown and role in (PUBLISHES, SUBSCRIBES):
         (shown.sent if role == PUBLISHES else shown.read).setdefault(topic, type_)
 
@@ -121,7 +120,7 @@ def to_layout(plan: System) -> str:
     every = _scene(robots, shared, world_of_plan(plan), prefixed)
     tabs = [
         _Tab("all robots", {"3D!all": every}),
-        *(_Tab(it.robot.name, _own(it, shared, sent, prefixed)) for it in robots),
+        *(_Tab(it.robot.name, _panels_of_robot(it, shared, sent, prefixed)) for it in robots),
     ]
     config: dict[str, Any] = {name: own for tab in tabs for name, own in tab.panels.items()}
     shown = []
@@ -141,7 +140,7 @@ def to_layout(plan: System) -> str:
     return json.dumps({"configById": config, **rest, "layout": "Tab!robots"}, indent=1) + "\n"
 
 
-def _own(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
+def _panels_of_robot(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
     """Return the robot in 3D, its images, and buttons that drive it."""
     name, frames = shown.robot.name, shown.robot.frames
     bodies = [it for it in frames if any(body in it for body in BODY_FRAMES)]
@@ -159,6 +158,7 @@ def _own(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
 
 
 def _scene(robots: Sequence[Shown], shared: Shown, frame: str, prefixed: bool) -> dict[str, Any]:
+    """Return the settings of a 3D panel."""
     topics = {it for one in (*robots, shared) for it in one.of_type(_SHOWN)}
     layers = {}
     for it in robots:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is started, in one record: launch files, actions, lines for a shell and their checks are made of
-it."""
+"""What is started, as a record: launch files, actions, lines for a shell and checks are made of it."""
 
 import re
 import shlex
@@ -9,13 +8,8 @@ from typing import Any, NamedTuple, TypeAlias
 
 from multibot_rewrite.knowledge.programs import Program
 from multibot_rewrite.planning.records import Rules
-from multibot_rewrite.planning.ways import (
-    COMPONENT,
-    SPAWN,
-    Started,
-    ros_arguments,
-    spawner_arguments,
-)
+from multibot_rewrite.planning.ways import SPAWN, Started, ros_arguments, spawner_arguments
+from multibot_rewrite.system.records import COMPONENT
 
 # The share folder of a package, as launch files in XML have it.
 _SHARE = re.compile(r"\$\(find-pkg-share ([\w-]+)\)")
@@ -42,9 +36,10 @@ NOTHING: Mapping[str, str] = {}
 
 
 class Switch(NamedTuple):
-    """A launch argument that decides whether a process starts, with the value that it has, and the
-    ``word`` of a condition for those with which it does: ``name`` (true), ``!name`` (false),
-    ``name=a|b`` (one of these), ``name!=a|b`` (none of these)."""
+    """A launch argument that decides whether a process starts, with its ``default``.
+
+    The ``word`` of a condition says with which values it starts: ``name`` (true), ``!name``
+    (false), ``name=a|b`` (one of these), ``name!=a|b`` (none of these)."""
 
     name: str
     default: str
@@ -52,17 +47,17 @@ class Switch(NamedTuple):
 
 
 def name_in(word: str) -> str:
-    """Return the launch argument of a word of a condition."""
+    """Return the launch argument that a term of a condition is about."""
     return word.strip("!").partition("=")[0].rstrip("!")
 
 
 def values_in(word: str) -> list[str]:
-    """Return the values of a word of a condition; none for one that is true or false."""
+    """Return the values that a term of a condition names; none for a term of true or false."""
     return word.partition("=")[2].split("|") if "=" in word else []
 
 
 def holds(word: str, value: str) -> bool:
-    """Return whether a word of a condition holds with a value of its launch argument."""
+    """Return whether a term of a condition holds with a value of its launch argument."""
     if values := values_in(word):
         return (value in values) != (f"{name_in(word)}!=" in word)
     return (value.lower() in ("true", "1")) == (word[0] != "!")
@@ -108,8 +103,7 @@ EVENTS: Mapping[str, str] = {
 
 
 class Start(NamedTuple):
-    """A process: its program, its node's name and namespace (empty for those of its code), and what it
-    is given.
+    """A process: program, name and namespace of its node (empty: as in its code), what it is given.
 
     ``components`` are loaded into it: each has its class as ``plugin`` and no ``executable``.
     ``brought_up`` is true if its node has a life cycle that nobody else configures and activates.
@@ -119,8 +113,7 @@ class Start(NamedTuple):
 
     Without a package the ``executable`` is a command; with ``components`` and without both it loads
     these into the container called ``name``. A launch file of a package has its path in the
-    share folder for one, and names and values of launch arguments as words.
-    """
+    share folder for one, and names and values of launch arguments as words."""
 
     package: str
     executable: str
@@ -150,7 +143,7 @@ class Start(NamedTuple):
 
     @property
     def terms(self) -> list[str]:
-        """The words of its condition."""
+        """The terms of its condition."""
         return self.condition.split()
 
     @property
@@ -175,17 +168,18 @@ class Led(NamedTuple):
 
     @property
     def always(self) -> "list[Led]":
-        """Return what starts without it where its condition does not hold."""
+        """Return the processes after it that start even if its condition does not hold."""
         return [it for it in self.followers if not {*self.start.terms} <= {*it.start.terms}]
 
     def at(self, event: str) -> "list[Led]":
-        """Return what starts at an event."""
+        """Return the processes that start at an event of this one."""
         return [it for it in self.followers if EVENTS[it.start.process.event] == event]
 
 
 def in_order(starts: Sequence[Start]) -> Iterator[Led]:
-    """Yield the processes with those that wait for them; one that waits for a missing one, or needs
-    another package than it, waits for nothing."""
+    """Yield the processes with those that wait for them.
+
+    One that waits for a missing one, or needs another package than it, waits for nothing."""
     leaders = {
         it.number: at
         for at, it in enumerate(starts)
@@ -219,7 +213,7 @@ def start_of(it: Started, program: Program, parameters: tuple[Parameters, ...] =
 
 
 def spawner_of(it: Started, *words: str | File) -> Start:
-    """Return the spawner of a controller, with further ``words``."""
+    """Return the process that spawns a controller, with further arguments."""
     return Start(*SPAWN, it.node.namespace, arguments=(*spawner_arguments(it), *words))
 
 
@@ -258,7 +252,7 @@ def keywords(it: Start) -> dict[str, Any]:
 
 
 def with_rest(text: str, rest: Any) -> Any:
-    """Return a value of the environment that is added to the rest: ``:`` is where that is."""
+    """Return a value of the environment with ``rest`` in a list, on the side of its ``:``."""
     if text[:1] == ":":
         return [rest, text]
     return [text, rest] if text[-1:] == ":" else text
@@ -270,5 +264,5 @@ def in_shares(text: str) -> list[str]:
 
 
 def path_of(it: str | File) -> str:
-    """Return a word of a program, for a file its path."""
+    """Return a word of a command line: a text as it is, a file by its path."""
     return it.path if isinstance(it, File) else it

@@ -35,7 +35,7 @@ from multibot_rewrite.planning.way_checks import (
     NOT_TAKEN,
     PROBE,
     asked_for,
-    is_stand_in,
+    is_controller_topic,
     not_taken,
     unreachable,
     useless_rules,
@@ -64,7 +64,7 @@ def build_table(
     with gc_paused():
         # Made once: the run of another robot differs only in the robot's name.
         first = robots[0] if robots else ""
-        heads = _heads(first, plugins.get(first, ()), naming)
+        heads = _prefixes_of_plugins(first, plugins.get(first, ()), naming)
         others = {**heads, **places_of(PROBE, nodes, naming)}
         once = frozenset(it.name for it in nodes if it.shared)
         # What the robot's own files set for a node, and where.
@@ -77,7 +77,7 @@ def build_table(
         runs = [run_of("", it, naming) for it in nodes if it.shared]
         is_named = any(it.is_controller for it in nodes)
         for robot in robots:
-            copies = [_copy(it, robot) for it in own]
+            copies = [_renamed_copy(it, robot) for it in own]
             # The controllers that get the rules of their plugin; None where no node set names them.
             controllers = [it for it in copies if it.fact.is_controller] or None
             if not controller_way(release).of_manager:
@@ -91,7 +91,7 @@ def build_table(
                     continue
                 # What their controllers publish is the controllers' own, if a node set names those.
                 ends = run.fact.endpoints
-                kept = tuple(it for it in ends if not (is_named and is_stand_in(run, it)))
+                kept = tuple(it for it in ends if not (is_named and is_controller_topic(run, it)))
                 runs.append(with_names(run._replace(fact=run.fact._replace(endpoints=kept))))
         made = Table(naming.layout.name, tuple(runs), tuple(problems), release)
         return made._replace(problems=(*made.problems, *not_taken(made)))
@@ -121,7 +121,7 @@ def joined(table: Table, other: Table) -> Table:
     return made._replace(problems=tuple(dict.fromkeys((*each, *not_taken(made)))))
 
 
-def _copy(run: Run, robot: str) -> Run:
+def _renamed_copy(run: Run, robot: str) -> Run:
     """Return the probe's node, renamed for another robot."""
     return run._replace(
         robot=robot,
@@ -142,9 +142,10 @@ def run_of(
     others: Places = NOWHERE,
     once: frozenset[str] = frozenset(),
 ) -> Run:
-    """Return namespace, name, rules and names of one robot's node; a node for all robots stays as
-    it is. ``others`` are the places of the robot's nodes: a name below one of them is renamed with
-    it. ``once`` are the nodes for all robots: a name below one of them is that node's own."""
+    """Return one robot's node with its names and rules; a node for all robots stays as it is.
+
+    A name below a node of ``others`` (their places) is renamed with it; ``once`` are nodes for all
+    robots."""
     if node.shared:
         above, _, own = node.name.strip("/").rpartition("/")
         return with_names(Run("", node.name, f"/{above}", own, (), node))
@@ -164,8 +165,7 @@ def run_of(
 def _end_as_asked(
     endpoint: Endpoint, node: NodeFacts, at: tuple[str, str, Iterable[Rule]]
 ) -> Endpoint:
-    """Return the endpoint under the name that its node asks for by the rules of the others; what is
-    made of another's name has to lead where the robot alone has it."""
+    """Return the endpoint under the name that its node asks for; it may be made of another end's."""
     if not endpoint.beside:
         return endpoint
     name, namespace, rules = at
@@ -175,8 +175,7 @@ def _end_as_asked(
 
 
 class _Place(NamedTuple):
-    """Where a node runs; ``root`` is what a relative target needs before it, since it would stay in the
-    node's own namespace."""
+    """Where a node runs; ``root`` is what a relative target needs to leave the node's own namespace."""
 
     robot: str
     naming: Naming
@@ -201,7 +200,7 @@ def _targets(endpoint: Endpoint, place: _Place) -> Iterator[Rule]:
             lead = root if is_below else ""
             renamed = target_of(f"{lead[1:]}{wanted}", kind, robot, naming)
             renamed = renamed and f"/{renamed}" if is_below else renamed
-            target = _below(wanted, naming, others) or renamed or moved
+            target = _target_below_node(wanted, naming, others) or renamed or moved
             target = target or (wanted if is_below else "")
         if target:
             yield source, f"{'' if target[0] == '/' else root}{target}"
@@ -216,6 +215,7 @@ def _targets(endpoint: Endpoint, place: _Place) -> Iterator[Rule]:
 
 
 def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
+    """Return what a relative target needs in front to leave the node's own namespace; may be empty."""
     if naming.topics == NAMESPACE:
         return f"/{robot}/" if namespace.count("/") > 1 else ""
     above = node.name.strip("/").rpartition("/")[0]
@@ -223,17 +223,15 @@ def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
 
 
 def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
-    """Return the full names of a robot's nodes, by their names in the node set, and of the hosts of
-    those: the controller manager may be made by what is not in the node set."""
+    """Return the full names of a robot's nodes and of their hosts, by their names in the node set."""
     own = [it for it in nodes if not it.shared]
     found = {it.host: placed(robot, it.host, naming) for it in own if it.host}
     found |= {it.name: placed(robot, it.name, naming, it.apart) for it in own}
     return {node: f"{above.rstrip('/')}/{name}" for node, (above, name) in found.items()}
 
 
-def _heads(robot: str, runs: Iterable[Run], naming: Naming) -> Places:
-    """Return what topics of the plugins of a robot's description begin with, a node or the stem of a
-    camera, by what they begin with where the robot is alone; both end with a slash."""
+def _prefixes_of_plugins(robot: str, runs: Iterable[Run], naming: Naming) -> Places:
+    """Return the node or camera that plugins' topics begin with, by that of a robot alone."""
     found: dict[str, str] = {}
     for end, name in (one for run in runs for one in with_names(run).names):
         head, _, rest = end.name.partition("/")
@@ -249,9 +247,8 @@ def _heads(robot: str, runs: Iterable[Run], naming: Naming) -> Places:
     return found
 
 
-def _below(name: str, naming: Naming, others: Places) -> str:
-    """Return the target for a name below another node of the robot, such as its private service, if
-    that node is renamed, or for a topic of a plugin; otherwise ""."""
+def _target_below_node(name: str, naming: Naming, others: Places) -> str:
+    """Return the target of a name below another, renamed node or a plugin's topic; empty for none."""
     bare = name.strip("/")
     head = next((it for it in others if it[-1:] == "/" and bare.startswith(it)), "")
     head, slash, rest = (head[:-1], "/", bare[len(head) :]) if head else bare.partition("/")
@@ -270,6 +267,7 @@ def plugin_nodes(reading: Reading, robot: str) -> Iterator[Run]:
 
 
 def _facts(node: ReadNode) -> NodeFacts:
+    """Return what is known of a plugin's node by its description."""
     endpoints = (
         Endpoint(it.kind, it.role, it.code_name, it.type, parameter=it.parameter, when=it.off)
         for it in node.endpoints

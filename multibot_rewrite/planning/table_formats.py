@@ -11,11 +11,6 @@ from math import inf
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.ways import (
-    COMPONENT,
-    HOST,
-    PLUGIN,
-    PROCESS,
-    SPAWNER,
     Delivery,
     Started,
     arguments,
@@ -25,6 +20,7 @@ from multibot_rewrite.planning.ways import (
     rules_by_taker,
     started,
 )
+from multibot_rewrite.system.records import COMPONENT, HOST, PLUGIN, PROCESS, SPAWNER
 
 EVERY_ROBOT = "all robots"
 # What programs read of a finding about the table.
@@ -32,10 +28,10 @@ OF_A_PROBLEM = ("code", "level", "robot", "node", "message", "hint")
 
 
 def ros_args(table: Table) -> str:
-    """Return one line for each process: the arguments of ``ros2 run PACKAGE EXECUTABLE``. For a
-    controller they are those of its spawner, for a component those of ``ros2 component load``. A
-    node that nothing is started for has no line."""
-    text = _comment(table)
+    """Return a line for each process with the arguments of ``ros2 run PACKAGE EXECUTABLE``.
+
+    A controller has those of its spawner, a component those of ``ros2 component load``."""
+    text = _release_comment(table)
     for it in started(table):
         by = f" ({it.way})" if it.way != PROCESS else ""
         line = shlex.join(arguments(it)) or "(no rule)"
@@ -43,7 +39,7 @@ def ros_args(table: Table) -> str:
     return text
 
 
-def _comment(table: Table) -> str:
+def _release_comment(table: Table) -> str:
     """Return a line with the release of the table, for shells and Python."""
     return f"# ROS 2 {table.release}\n" if table.runs else ""
 
@@ -51,7 +47,7 @@ def _comment(table: Table) -> str:
 def launch(table: Table) -> str:
     """Return Python for a launch file: robot -> node -> arguments, by what is started for the nodes."""
     found = list(started(table))
-    return _comment(table) + "".join(_launch_table(found, *it) for it in _LAUNCH)
+    return _release_comment(table) + "".join(_python_table(found, *it) for it in _LAUNCH)
 
 
 _LAUNCH = (
@@ -61,7 +57,8 @@ _LAUNCH = (
 )
 
 
-def _launch_table(found: list[Started], way: str, name: str, *words: str) -> str:
+def _python_table(found: list[Started], way: str, name: str, *words: str) -> str:
+    """Return a dictionary as Python: robot -> node -> arguments; empty without rows."""
     what, action, package = words
     rows = [
         f"# Arguments of {what}, by robot and node: {action}(**{name}[robot][node], {package}...)\n"
@@ -153,8 +150,7 @@ def given_to(it: Delivery) -> str:
 
 
 def standing_by_robot(table: Table) -> Iterator[tuple[str, list[Delivery]]]:
-    """Return by robot where each node's rules go, with all rules of a process that takes those of
-    other nodes; nodes for all robots are under a name that no robot can have."""
+    """Yield by robot, or EVERY_ROBOT, where rules go: all rules of a process, with its taker."""
     given = deliveries(table)
     rules = rules_by_taker(given)
     each = {key_of(it.node): it for it in reversed(given)}

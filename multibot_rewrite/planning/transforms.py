@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.grouping import chain_ends
 from multibot_rewrite.base.naming import Naming, spelled
 from multibot_rewrite.knowledge.conditions import holds
-from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.system.records import PUBLISHES, Edge, edge_of
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from multibot_rewrite.description.steps.collect import Inventory
+    from multibot_rewrite.knowledge.records import NodeFacts
 
 STATE_PUBLISHER = "robot_state_publisher"
 NO_PLAIN: Mapping[tuple[str, str], str] = {}
@@ -50,7 +50,7 @@ def edges_of(
     shared = tuple(f"<{it}_frame=" for it in naming.shared_frames)
     described = state_publisher_of(nodes)
     for node in nodes:
-        named = _once(by_naming) if _is_static(node) else by_naming
+        named = _named_once(by_naming) if _is_static(node) else by_naming
         frames = [
             frame._replace(default=plain.get(("link", frame.default)) or named(frame.default))
             if frame.default
@@ -64,14 +64,13 @@ def edges_of(
 
 
 def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:
-    """Return the node that sends the robot's description, empty for none. Another state publisher sends
-    that of a dock or the like, under another name."""
+    """Return the node that sends the robot's own description (not that of a dock); or empty."""
     found = [node.name for node in nodes if node.package == STATE_PUBLISHER]
     return STATE_PUBLISHER if STATE_PUBLISHER in found else next(iter(found), "")
 
 
-def _once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
-    """Return the naming for arguments, which may already have the robot's name before a frame."""
+def _named_once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
+    """Return a naming that leaves frames as they are which have the robot's name already."""
     own = by_naming("x").removesuffix("x")
     return lambda frame: frame if own and frame.startswith(own) else by_naming(frame)
 
@@ -102,9 +101,11 @@ def edges_in(root: _Element) -> Iterator[Edge]:
 
 
 def tree_joints(root: _Element) -> Iterator[tuple[_Element, Edge]]:
-    """Yield the joints of the tree, each with its transform. A frame of an SDF is the link that it is
-    attached to; a joint below ``<gazebo>`` is for the simulator alone. Of two with one child the last
-    by name counts (urdfdom_headers model.h initTree)."""
+    """Yield the joints of the tree, each with its transform.
+
+    A frame of an SDF is the link that it is attached to; a joint below ``<gazebo>`` is for the
+    simulator alone. Of two with one child the last by name counts (urdfdom_headers model.h
+    initTree)."""
     frames = ((it.get("name", ""), it.get("attached_to", "")) for it in root.iter("frame"))
     attached = chain_ends({name: attached_to for name, attached_to in frames if attached_to})
     found: list[tuple[_Element, Edge]] = []

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a remap table cannot do or does wrongly; the rules that rcl has for each node once it runs, from
-where they are written, and those that a node needs and does not get there, by release.
+"""What a remap table cannot do or does wrongly, by the rules that rcl has for each running node.
 
 The first match counts: a node's own arguments come before those of its process."""
 
@@ -18,17 +17,16 @@ from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.planning.of_runs import expanded, name_made_of_other_end, parsed, target_of
 from multibot_rewrite.planning.records import Names, Rule, Rules, Run, Table
-from multibot_rewrite.planning.ways import (
+from multibot_rewrite.planning.ways import Delivery, Key, deliveries, key_of, rules_by_taker
+from multibot_rewrite.system.records import (
+    ACTION,
     COMPONENT,
     PLUGIN,
+    PUBLISHES,
+    SERVICE,
     SPAWNER,
-    Delivery,
-    Key,
-    deliveries,
-    key_of,
-    rules_by_taker,
+    TOPIC,
 )
-from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, TOPIC
 
 
 class _Standing(NamedTuple):
@@ -41,8 +39,7 @@ class _Standing(NamedTuple):
 
 
 def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tuple[Delivery, Run]]:
-    """Yield where the rules of each node go, and the node with the rules that rcl has for it and
-    its process; those at one of the ways ``left_out`` are missing."""
+    """Yield where each node's rules go, and the node with the rules it gets; not those ``left_out``."""
     meant = deliveries(table)
     given = [it for it in meant if it.way not in left_out]
     standing = _Standing(
@@ -54,10 +51,11 @@ def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tupl
     )
     # A component's first delivery is its own, the second that of its helper nodes.
     first = {key_of(it.node): it for it in reversed(meant)}
-    yield from ((it, _running(it, standing)) for it in reversed(first.values()))
+    yield from ((it, _with_rules_of_process(it, standing)) for it in reversed(first.values()))
 
 
-def _running(it: Delivery, standing: _Standing) -> Run:
+def _with_rules_of_process(it: Delivery, standing: _Standing) -> Run:
+    """Return the node with the rules that rcl has for it and its process."""
     node, own = it.node, standing.rules.get((it.node.robot, it.taker), ())
     if it.way == SPAWNER:
         # A tf listener that its code makes has the arguments of the manager's process alone.
@@ -70,7 +68,7 @@ def _running(it: Delivery, standing: _Standing) -> Run:
             ),
             *own,
         )
-        return _in_process(node, rules, node.namespace, process)
+        return _with_process_rules(node, rules, node.namespace, process)
     if it.way == PLUGIN:
         rules = wide = standing.world
         # A plugin's rules are its own; nodes without any have those of the first robot's plugin.
@@ -80,25 +78,23 @@ def _running(it: Delivery, standing: _Standing) -> Run:
             rules = tuple(dict.fromkeys((*own, *wide)))
         given = own if standing.controllers.forwarded else ()
         handed_on = wide if standing.controllers.process_wide else given
-        return _in_process(node, rules, node.namespace, wide)._replace(handed_on=handed_on)
+        return _with_process_rules(node, rules, node.namespace, wide)._replace(handed_on=handed_on)
     taker = standing.nodes.get((node.robot, it.taker), node)
     container = standing.nodes.get((node.robot, taker.fact.container))
     if container is None:
-        return _in_process(node, own, taker.namespace, own)
+        return _with_process_rules(node, own, taker.namespace, own)
     process = standing.rules.get((node.robot, container.node), ())
     # What a component makes has the arguments of the process as well, the component has not.
     rules = own if it.way == COMPONENT else (*own, *process)
-    return _in_process(node, rules, container.namespace, process)
+    return _with_process_rules(node, rules, container.namespace, process)
 
 
-def _in_process(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
+def _with_process_rules(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
     return run._replace(rules=rules, process_namespace=namespace, process_rules=wide)
 
 
-def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
-    """Return whether this is a topic of a controller of the plugin, and not of the controller
-    manager itself. Those are what the plugin is known to publish, and without a role what its rules
-    name."""
+def is_controller_topic(node: Run, endpoint: Endpoint) -> bool:
+    """Return whether a plugin's end is a controller's topic, and not the controller manager's own."""
     return node.process_wide and endpoint.role in (PUBLISHES, "")
 
 
@@ -119,9 +115,10 @@ NOT_TAKEN = declare(
 
 
 def not_taken(table: Table) -> Iterator[Finding]:
-    """Report, once a node, names of the code or of another robot that a node has because its rule
-    does not reach it. What a plugin's controllers are known to publish is reported by the second
-    reading of the description, if no node set names them."""
+    """Report, once a node, names that it has because its rule does not reach it.
+
+    They are names of the code or of another robot. What a plugin's controllers are known to publish
+    is reported by the second reading of the description, if no node set names them."""
     of_manager = controller_way(table.release).of_manager
     robots = _robots_to_check(table)
     some = table._replace(runs=tuple(it for it in table.runs if it.robot in robots))
@@ -147,9 +144,9 @@ def not_taken(table: Table) -> Iterator[Finding]:
             own = names.get((running.robot, running.full_name), ())
             if running.process_wide and not of_manager:
                 own = tuple(it for it in own if it[0].role != PUBLISHES)
-            wrong = dict.fromkeys(_wrong(own, running, owners))
+            wrong = dict.fromkeys(_wrong_names(own, running, owners))
             if wrong:
-                yield _finding(it, list(wrong), table.release)
+                yield _finding_of_names(it, list(wrong), table.release)
 
 
 def _robots_to_check(table: Table) -> set[str]:
@@ -164,14 +161,14 @@ def _robots_to_check(table: Table) -> set[str]:
     return found
 
 
-def _wrong(
+def _wrong_names(
     names: Names, running: Run, owners: Callable[[], Mapping[str, set[str]]]
 ) -> Iterator[str]:
     """Yield names that differ from the table: as in the code, or like something of a robot."""
     own, theirs, bare = (bound_to(running, it) for it in (running.rules, running.handed_on, ()))
     for end, name in names:
         kind = TOPIC if end.kind == ACTION else end.kind
-        given = theirs if is_stand_in(running, end) else own
+        given = theirs if is_controller_topic(running, end) else own
         found = resolve_bound(end.name, kind, given)
         if found == name:
             continue
@@ -180,7 +177,7 @@ def _wrong(
             yield end.name
 
 
-def _finding(it: Delivery, kept: list[str], release: str) -> Finding:
+def _finding_of_names(it: Delivery, kept: list[str], release: str) -> Finding:
     node, names = it.node, ", ".join(kept)
     message = f"on {release} no rule reaches it for {names}, though one is written"
     hint = f"give its rules to the process of {node.fact.host or node.name}"
@@ -235,37 +232,37 @@ def useless_rules(
     runs: Iterable[Run], release: str, controllers: Sequence[Run] | None = ()
 ) -> Iterator[Finding]:
     """Report rules that match no name of their node, and rules after one that matches first.
+
     ``controllers`` are those that a plugin hands its rules on to; None if they are not known. A
     description may serve robots with other controllers: a rule for one known in ``release`` is
     right."""
-    others = [*map(_names, controllers or ())]
+    others = [*map(_asked_names, controllers or ())]
     known = _names_of_managers(release)
     by_file = any(it.fact.origin.place.line for it in controllers or ())
     for run in runs:
-        own, wide, node = _names(run), run.process_wide, run.node
+        own, wide, node = _asked_names(run), run.process_wide, run.node
         asked = [own, *(others if wide else ())]
         robot = "" if run.robot == PROBE else run.robot
-        seen: set[tuple[str, str]] = set()
+        seen: dict[tuple[str, str], str] = {}
         for left, target in run.rules:
-            text, (whose, source) = f"{left}:={target}", _split(left)
+            text, (whose, source) = f"{left}:={target}", _split_left_side(left)
             match = (whose, resolve_bound(source, TOPIC, own.bare))
-            if match in seen:
+            there, result = match in seen, resolve_bound(target, TOPIC, own.bare)
+            if seen.setdefault(match, result) != result:
                 message = f"{text} has no effect: an earlier rule matches first"
                 yield LATER_RULE.finding(message, "remove it", robot=robot, node=node)
-            elif wide and (controllers is None or source.lstrip("/") in TF_TOPICS):
+            elif there or (wide and (controllers is None or source.lstrip("/") in TF_TOPICS)):
                 pass  # the rewrite itself writes those of tf
             elif wide and not whose and _is_for_controllers(source, known, by_file):
                 pass
-            elif not any(_matches(left, it) for it in asked):
+            elif not any(_rule_matches(left, it) for it in asked):
                 message = f"{text} matches no name of this node"
                 yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node)
-            seen.add(match)
 
 
 @cache
 def _names_of_managers(release: str) -> frozenset[str]:
-    """Return names in the code of controller managers and, if they hand on their rules in ``release``,
-    of controllers: those of every release, as one description may be for several."""
+    """Return the code's names of managers in all releases, and of controllers with their rules."""
     handed_on = controller_way(release).of_manager
     every = every_release().nodes.values()
     nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]
@@ -279,7 +276,8 @@ def _is_for_controllers(source: str, known: frozenset[str], by_file: bool) -> bo
     return source in known or below in known
 
 
-def _names(run: Run) -> _Names:
+def _asked_names(run: Run) -> _Names:
+    """Return the full names that a node asks for without its rules."""
     bare = bind(run.name, run.namespace, ())
     # What is known of a controller manager only by its rules proves none of them.
     known = [it for it in run.fact.endpoints if it.role or not run.process_wide]
@@ -302,15 +300,16 @@ def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:
     return (name, f"{above}/{name.lstrip('/')}") if endpoint.above and above else (name,)
 
 
-def _matches(left: str, names: _Names) -> bool:
-    whose, source = _split(left)
+def _rule_matches(left: str, names: _Names) -> bool:
+    """Return whether the left side of a rule matches a name of its node."""
+    whose, source = _split_left_side(left)
     if whose not in ("", names.bare.node):
         return False
     match = resolve_bound(source, TOPIC, names.bare)
     return not names.full.isdisjoint((kind, match) for kind in (TOPIC, SERVICE))
 
 
-def _split(source: str) -> tuple[str, str]:
-    """Return the node in the left side of a rule, and the name."""
+def _split_left_side(source: str) -> tuple[str, str]:
+    """Return the node (or "") and the name in the left side of a rule."""
     whose, colon, name = source.rpartition(":")
     return (whose, name) if colon else ("", source)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the remap rules of each node are written, by release: a table -> deliveries, which all
-writers use, and what is started with them: processes, components and the spawners of controllers.
+"""Where each node's remap rules are written, by release (deliveries), and what is started with them.
 
 A node takes rules from its own process, from the node whose process it is in, from the container
 that loads it, from its spawner, or from its plugin's tag. Sources: ros2_control
@@ -17,10 +16,8 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.planning.of_runs import expanded
 from multibot_rewrite.planning.records import Rule, Rules, Run, Table
+from multibot_rewrite.system.records import COMPONENT, HOST, PLUGIN, PROCESS, SPAWNER
 
-PROCESS, HOST, COMPONENT = "process", "host", "component"
-SPAWNER, PLUGIN = "spawner", "plugin"
-WAYS = (PROCESS, HOST, COMPONENT, SPAWNER, PLUGIN)
 # A costmap has the remap rules of the component that makes it (navigation2 4cade8d2f, 1.5.0).
 COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
 
@@ -45,7 +42,7 @@ Sources: TypeAlias = Mapping[str, frozenset[str]]
 
 
 def key_of(run: Run) -> Key:
-    """Return its robot and its name in its node set."""
+    """Return a node's robot, and its name in its node set."""
     return run.robot, run.node
 
 
@@ -58,7 +55,7 @@ def deliveries(table: Table) -> tuple[Delivery, ...]:
     for run in table.runs:
         asked = {name for end, _ in run.names if end.helper for _, name in expanded(end)}
         helpers[run.full_name] = helpers.get(run.full_name, frozenset()) | asked
-    return tuple(it for node in nodes for it in _deliveries(node, known, table.release, helpers))
+    return tuple(it for node in nodes for it in _deliveries_of(node, known, table.release, helpers))
 
 
 def rules_by_taker(given: Iterable[Delivery]) -> dict[Key, Rules]:
@@ -85,7 +82,7 @@ def merged(nodes: Iterable[Run]) -> tuple[Run, ...]:
 
 
 def way_of(node: Run, known: Nodes, release: str) -> str:
-    """Return how a node of the table gets its rules."""
+    """Return how a node gets its rules: PROCESS, HOST, COMPONENT, SPAWNER or PLUGIN."""
     if node.fact.plugin:
         return PLUGIN
     host = known.get((node.robot, node.fact.host))
@@ -109,7 +106,8 @@ def taker_of(node: Run, known: Nodes, release: str) -> str:
     return node.fact.host
 
 
-def _deliveries(node: Run, known: Nodes, release: str, helpers: Sources) -> Iterator[Delivery]:
+def _deliveries_of(node: Run, known: Nodes, release: str, helpers: Sources) -> Iterator[Delivery]:
+    """Yield where the rules of a node are written, and those of its helper nodes."""
     way, taker = way_of(node, known, release), taker_of(node, known, release)
     lead = f"{node.name}:" if way == HOST else ""
     yield Delivery(
@@ -167,8 +165,7 @@ def started(table: Table) -> Iterator[Started]:
 
 
 def arguments(it: Started) -> list[str]:
-    """Return the arguments of ``ros2 run PACKAGE EXECUTABLE``, of a controller's spawner, or of ``ros2
-    component load CONTAINER PACKAGE PLUGIN``; empty if nothing is needed."""
+    """Return the arguments of ``ros2 run``, ``ros2 component load`` or a spawner; may be empty."""
     if it.way == SPAWNER:
         return [*spawner_arguments(it), *ros_arguments(it.node.namespace, "", ())]
     if it.way == COMPONENT:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which launch file of a repository is the robot's bringup: it starts the description's publisher or
-spawner, no other file includes it, and it is for the simulator, or for the real robot, as it is wanted.
-"""
+"""Finds the launch file that is a robot's bringup, for the simulator or the real robot.
+
+It starts the description's publisher or spawner, and no other file includes it."""
 
 import os
 import re
@@ -40,10 +40,11 @@ _WORD = re.compile(r"[a-z0-9]+")
 
 
 class Robot(NamedTuple):
-    """The robot that a launch file is to start: the files of its description, and those of others;
-    ``simulator`` is "none" for a real one, and empty where nobody said which it is: then it is what
-    ``has_simulator`` says of the description, if there is a launch file for it. ``has_control`` is
-    whether it has a controller manager."""
+    """The robot that a launch file is to start: files of its description, those of others, world.
+
+    ``simulator`` is "none" for a real one, and empty where nobody said which it is: then it is
+    what ``has_simulator`` says of the description, if there is a launch file for it.
+    ``has_control`` is true if it has a controller manager."""
 
     files: frozenset[str]
     others: frozenset[str]
@@ -58,70 +59,69 @@ class Robot(NamedTuple):
 
 
 def bringup_as_named(order: LaunchOrder) -> Bringup:
-    """Return the launch file that was named; an argument that names the vendor's robot names each
-    robot, if the launch file starts the same with it. Raises InputError if it cannot be read, or
-    starts nothing."""
+    """Return the named launch file; raises InputError if it cannot be read or starts nothing."""
+    # An argument that names the vendor's robot names each, if the file starts the same with it.
     graph = read_named(order).graph
-    each = tuple((name, _for_each(name, value)) for name, value in order.arguments)
+    each = tuple((name, _value_for_each(name, value)) for name, value in order.arguments)
     with suppress(InputError):
         other = (
             read_named(order._replace(arguments=each)).graph if each != order.arguments else graph
         )
-        if each != order.arguments and _does(other) == _does(graph):
+        if each != order.arguments and _effects(other) == _effects(graph):
             order, graph = order._replace(arguments=each), other
     return Bringup(order, graph, starts_simulator(graph))
 
 
-def _for_each(argument: str, value: str) -> str:
+def _value_for_each(argument: str, value: str) -> str:
     """Return an argument's value for any robot: ``hippo/`` of ``vehicle_name`` is ``{robot}/``."""
     name = value.strip("/_")
     return value.replace(name, ROBOT, 1) if names_robots(argument) and name else value
 
 
-def _does(graph: LaunchGraph) -> tuple[object, ...]:
+def _effects(graph: LaunchGraph) -> tuple[object, ...]:
     """Return what a launch file starts and reads, whatever it calls the robot."""
     started = sorted((it.package, it.executable) for it in graph.nodes)
-    return started, _reads(graph), len(graph.notes), len(graph.idle)
+    return started, _files_read(graph), len(graph.notes), len(graph.idle)
 
 
 def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | None:
-    """Return the launch file that starts most of the robot, among those for its simulator, or the
-    real robot's; one with the name of a trial comes last. None where none starts the robot."""
+    """Return the launch file that starts most of the robot, in its world; None if none does."""
+    # One with the name of a trial comes last.
     every = read_any(launch)
-    included = _included(every)
+    included = _included_files(every)
     roots = [it for it in every if not it.why and it.file not in included]
     # Those that start the publisher or spawner of the description, as far as it is known which one that
     # is, and of one robot.
-    publishing = (it for it in roots if any(map(_publishes, it.graph.nodes)))
+    publishing = (it for it in roots if any(map(_is_publisher, it.graph.nodes)))
     likely = [it for it in publishing if not _is_of_another(it.graph, robot)]
-    starting = [it for it in likely if _reads(it.graph) & robot.files] or likely
+    starting = [it for it in likely if _files_read(it.graph) & robot.files] or likely
     if not starting:
         return _only_launch_file(roots, robot, trust)
-    starting = sorted(starting, key=_rank)[:_MOST]
+    starting = sorted(starting, key=_sort_key)[:_MOST]
     read = _with_own_arguments(starting, every, robot, trust)
     # What is not said is simulated where a launch file does it.
     wanted = robot.is_simulated or not robot.simulator
     for simulated in (wanted, *([] if robot.simulator else [not wanted])):
         if fits := [it for it in read if starts_simulator(it.graph) == simulated]:
-            first, *others = sorted(fits, key=lambda it: (_tries(it, simulated), _rank(it)))
+            first, *others = sorted(fits, key=lambda it: (_is_trial(it, simulated), _sort_key(it)))
             return Bringup(first.order, first.graph, simulated, tuple(it.order for it in others))
     return None
 
 
 def processes_of_robot(it: Reading) -> int:
-    """Return how many processes a launch file starts for a robot, those that only show it as one; 0
-    if it is a test, or neither publishes a description nor simulates one. Raises nothing."""
-    starts = starts_simulator(it.graph) or any(map(_publishes, it.graph.nodes))
-    own = {one for one in _own(it.graph) if not _shows(one)}
+    """Return how many processes a launch file starts for a robot; raises nothing."""
+    # Those that only show it count as one; 0 for a test, or without a description.
+    starts = starts_simulator(it.graph) or any(map(_is_publisher, it.graph.nodes))
+    own = {one for one in _own_nodes(it.graph) if not _shows(one)}
     own |= {one for one in it.graph.nodes if one.package in programs().simulators}
-    return 1 + len(own) if starts and not _tries(it, True) else 0
+    return 1 + len(own) if starts and not _is_trial(it, True) else 0
 
 
 def _with_own_arguments(
     likely: Sequence[Reading], every: Sequence[Reading], robot: Robot, trust: bool
 ) -> list[Reading]:
-    """Return the launch files with arguments that start the robot as wanted: their own, otherwise a
-    switch; otherwise files that these include. All that start it, if none does it so."""
+    """Return the launch files with arguments that start the robot as wanted, or start it at all."""
+    # Their own arguments, otherwise a switch, otherwise files that these include.
 
     def starting(orders: Iterable[LaunchOrder]) -> list[Reading]:
         read = read_as(it._replace(trusted=trust) for it in orders)
@@ -135,7 +135,7 @@ def _with_own_arguments(
         # The values that launch files give to the arguments of others.
         includes = (one for it in every for one in it.graph.includes)
         passed = sets_by_key(pair for one in includes for pair in one.arguments)
-        found += starting(_switched(likely, passed))
+        found += starting(_switched_orders(likely, passed))
     if not fits(found):
         below = dict.fromkeys(one.file for it in likely for one in it.graph.includes)
         here = (it for it in [*below][:_MOST] if os.path.isabs(it) and os.path.isfile(it))
@@ -143,7 +143,7 @@ def _with_own_arguments(
     return found
 
 
-def _included(read: Iterable[Reading]) -> frozenset[str]:
+def _included_files(read: Iterable[Reading]) -> frozenset[str]:
     """Return the paths of the launch files that another one includes."""
     files = {os.path.realpath(it.file): it.file for it in read}
     named = (
@@ -155,20 +155,22 @@ def _included(read: Iterable[Reading]) -> frozenset[str]:
     return frozenset(files[it] for it in named if it in files)
 
 
-def _switched(likely: Iterable[Reading], passed: Mapping[str, set[str]]) -> Iterator[LaunchOrder]:
+def _switched_orders(
+    likely: Iterable[Reading], passed: Mapping[str, set[str]]
+) -> Iterator[LaunchOrder]:
     """Yield the launch files with one argument that may choose between simulator and real robot."""
     for it in likely:
         switches = (
             (one.name, value)
             for one in it.graph.declared
             if is_called_as_switch(one.name)
-            for value in _others(one, passed.get(one.name, set()))
+            for value in _other_values(one, passed.get(one.name, set()))
         )
         for pair in [*switches][:_MOST_SWITCHES]:
             yield LaunchOrder(it.file, (pair,))
 
 
-def _others(it: LaunchArgument, passed: set[str]) -> list[str]:
+def _other_values(it: LaunchArgument, passed: set[str]) -> list[str]:
     """Return other values of an argument: given by launch files, among its choices, the opposite."""
     values = [*sorted(passed), *it.choices, *other_values(it.default)]
     return [value for value in dict.fromkeys(values) if value not in ("", it.default)]
@@ -176,11 +178,11 @@ def _others(it: LaunchArgument, passed: set[str]) -> list[str]:
 
 def _is_of_another(graph: LaunchGraph, robot: Robot) -> bool:
     """Return whether a launch file reads only another robot's description."""
-    read = _reads(graph)
+    read = _files_read(graph)
     return bool(read & robot.others) and not read & robot.files
 
 
-def _reads(graph: LaunchGraph) -> set[str]:
+def _files_read(graph: LaunchGraph) -> set[str]:
     return {it.file for it in graph.read}
 
 
@@ -189,13 +191,13 @@ def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
     homes = {it.namespace for it in graph.nodes if _is_called(it, "publishers")}
     # What is said of a file as a whole starts nothing by itself.
     unread = any(it.place.line > 1 and not it.parameters for it in graph.notes)
-    shows = not unread and all(map(_shows, _own(graph)))
+    shows = not unread and all(map(_shows, _own_nodes(graph)))
     return len(homes) < 2 and (starts_simulator(graph) or not shows)
 
 
 def _only_launch_file(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | None:
-    """Return the only launch file that starts something of a robot, if none publishes its
-    description: a build does that, but spawns no controllers. None otherwise."""
+    """Return the only launch file that starts something of a robot without its description."""
+    # A build publishes that, but spawns no controllers.
     own = (it for it in roots if not _is_of_another(it.graph, robot))
     found = [it for it in own if any(map(is_of_robot, it.graph.nodes))]
     if len(found) != 1 or robot.has_control:
@@ -206,7 +208,7 @@ def _only_launch_file(roots: Sequence[Reading], robot: Robot, trust: bool) -> Br
     return Bringup(read.order, read.graph, simulated) if nodes else None
 
 
-def _publishes(it: LaunchedNode) -> bool:
+def _is_publisher(it: LaunchedNode) -> bool:
     return _is_called(it, "publishers") or f"{it.package}/{it.executable}" in programs().spawners
 
 
@@ -219,17 +221,17 @@ def _shows(it: LaunchedNode) -> bool:
     return _is_called(it, "publishers") or _is_called(it, "showing")
 
 
-def _own(graph: LaunchGraph) -> list[LaunchedNode]:
+def _own_nodes(graph: LaunchGraph) -> list[LaunchedNode]:
     return [it for it in graph.nodes if is_of_robot(it)]
 
 
-def _tries(it: Reading, simulated: bool) -> bool:
+def _is_trial(it: Reading, simulated: bool) -> bool:
     """Return whether a launch file is named as a trial, or as one of an unknown simulator."""
     words = {*_WORD.findall(os.path.basename(it.file).lower())}
     kinds = ("trials",) if simulated else ("trials", "simulations")
     return any(not words.isdisjoint(known_names()[it]) for it in kinds)
 
 
-def _rank(it: Reading) -> tuple[object, ...]:
+def _sort_key(it: Reading) -> tuple[object, ...]:
     """Return a sort key: most processes of a robot first, then read completely, then a short path."""
-    return -len(set(_own(it.graph))), not it.graph.whole, len(it.file), it.file
+    return -len(set(_own_nodes(it.graph))), not it.graph.whole, len(it.file), it.file

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which of several descriptions is the robot: what launch files load that start one, and whose
-names their related files have. Where nothing says it, the likeliest has rivals."""
+"""Chooses the robot among descriptions, by launch files and names in related files.
+
+Where nothing says it, the likeliest has rivals."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -30,9 +31,10 @@ _MORE = 2
 
 
 class Candidate(NamedTuple):
-    """A description and what speaks for it: how many processes the launch file starts that loads
-    it, whether its package is named after it, how many of its names their related files have;
-    ``part`` is whether it is called like a part, or the package of another description uses its
+    """A description and what speaks for it; ``started`` are processes of its launch file.
+
+    ``named`` is how many of its names related files have; ``of_package``: its package is named
+    after it; ``part``: it is called like a part, or another description's package uses its
     package."""
 
     robot: Looked
@@ -45,7 +47,7 @@ class Candidate(NamedTuple):
 
     @property
     def kind(self) -> tuple[bool, bool, bool]:
-        """The first of these are robots: several links, no part, something that moves."""
+        """A sort key: has several links, is no part, has something that moves."""
         return self.robot.links < 2, self.part, not self.moving
 
     @property
@@ -65,19 +67,21 @@ class Chosen(NamedTuple):
 def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
     """Return the descriptions, the likeliest to be the robot first; a house or a shelf is none."""
     said = names_of_files(found)
-    used = {it.path for it in robots if any(_uses(one, it) for one in robots if one.links > 1)}
+    used = {
+        it.path for it in robots if any(_depends_on(one, it) for one in robots if one.links > 1)
+    }
     made = [_candidate(it, said, found) for it in robots]
     # Where each uses the other, or a ring does, nothing is said.
     parts = [it._replace(part=it.part or it.robot.path in used) for it in made]
-    order = sorted(parts if len(used) < len(robots) else made, key=_rank)
+    order = sorted(parts if len(used) < len(robots) else made, key=_sort_key)
     alike = [it for it in order[1:] if _same_robot(it, order[0])]
     rivals = [it for it in order[1:] if it not in alike and not _is_behind(it, order[0])]
     return Chosen(order, rivals, alike)
 
 
 def may_be_partners(path: str, found: Found) -> Iterator[str]:
-    """Yield files of the other kind that may be of the same robot: an SDF for a URDF, a URDF for an
-    SDF. They have similar names, or a launch file loads both."""
+    """Yield files of the other kind, SDF or URDF, that may be of the same robot."""
+    # They have similar names, or a launch file loads both.
     launched = [paths for _, paths in loaded(found) if os.path.realpath(path) in paths]
     for other in found.every:
         if is_model(other) != is_model(path) and (
@@ -96,7 +100,7 @@ def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
 
 def _bare_links(it: Looked) -> set[str]:
     """Return its links without what a xacro puts in front for a robot."""
-    return {name.rpartition("/")[2] for name in _links(it)}
+    return {name.rpartition("/")[2] for name in _link_names(it)}
 
 
 def is_model(path: str) -> bool:
@@ -106,13 +110,14 @@ def is_model(path: str) -> bool:
 
 def acts(it: Looked) -> bool:
     """Return whether it can move, or senses. A model of a thing has at most a plugin of its own."""
-    if it.tag != "sdf" or it.links > 1 or any(_moving(it)):
+    if it.tag != "sdf" or it.links > 1 or any(_moving_joints(it)):
         return True
     return it.root is not None and next(it.root.iter("sensor"), None) is not None
 
 
 def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
-    links, moving = frozenset(_links(it)), frozenset(_moving(it))
+    """Return a description with what speaks for it."""
+    links, moving = frozenset(_link_names(it)), frozenset(_moving_joints(it))
     return Candidate(
         it,
         processes_with(it.path, found),
@@ -124,7 +129,7 @@ def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
     )
 
 
-def _uses(it: Looked, other: Looked) -> bool:
+def _depends_on(it: Looked, other: Looked) -> bool:
     """Return whether the package of a description depends on that of another one."""
     own, used = package_of(it.path), package_of(other.path)
     if own is None or used is None or own == used:
@@ -140,14 +145,13 @@ def is_called_like_a_part(path: str) -> bool:
 
 def names_its_package(path: str) -> bool:
     """Return whether a package is named after its description, as acme_tetra after tetra.xacro."""
-    words = _package(path).lower().split("_")
+    words = _package_name(path).lower().split("_")
     inner = (words, words[:-1], words[1:], words[1:-1])
     return _stem(path).lower() in {"_".join(it) for it in inner} - {""}
 
 
-def _rank(it: Candidate) -> tuple[object, ...]:
-    """Return a sort key: by kind, by what its launch file starts, of its package, named; then no
-    copy, for a simulator, with ``<ros2_control>``, a short path."""
+def _sort_key(it: Candidate) -> tuple[object, ...]:
+    """Return a sort key: kind, processes, package, names, no copy, simulator, control, path."""
     robot = it.robot
     is_copy = _COPY.search(os.path.basename(robot.path).lower()) is not None
     more = is_copy, robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
@@ -163,8 +167,8 @@ def _is_behind(it: Candidate, best: Candidate) -> bool:
 
 
 def _same_robot(it: Candidate, best: Candidate) -> bool:
-    """Return whether two files are of one robot: as URDF, xacro and SDF, simulated and real, or a
-    copy. Other files of one name in two folders are variants."""
+    """Return whether two files are of one robot: other kinds, simulated and real, or a copy."""
+    # Other files of one name in two folders are variants.
     if data_of_file(it.robot.path) == data_of_file(best.robot.path):
         return True
     names = {it.robot.name, _stem(it.robot.path)} & {best.robot.name, _stem(best.robot.path)}
@@ -193,24 +197,23 @@ def loaded(found: Found) -> list[tuple[Reading, Mapping[str, str]]]:
 
 
 def is_srdf_launched(path: str, found: Found) -> bool:
-    """Return whether a launch file loads an SRDF: it gives the package to MoveItConfigsBuilder, or
-    names the file in a folder of the package."""
+    """Return whether a launch file loads an SRDF: by MoveItConfigsBuilder or by its path."""
     folder, base = os.path.split(os.path.abspath(path))
-    package, end = _package(path), f"{os.path.basename(folder)}/{base}"
+    package, end = _package_name(path), f"{os.path.basename(folder)}/{base}"
     texts = [text_of(it) for it in found.launch]
     return any(package in _built_packages(it) or (package in it and end in it) for it in texts)
 
 
 def _built_packages(text: str) -> set[str]:
-    """Return the packages whose files MoveItConfigsBuilder takes; it is ROBOT_moveit_config where no
-    other one is named (moveit_configs_utils/moveit_configs_builder.py)."""
+    """Return the packages whose files MoveItConfigsBuilder takes."""
+    # Without a name ROBOT_moveit_config (moveit_configs_utils/moveit_configs_builder.py).
     if _BUILDER not in text:
         return set()
     usual = (f"{it}_moveit_config" for it in _BUILT.findall(text))
     return {*_BUILT_PACKAGE.findall(text)} or {*usual}
 
 
-def _package(path: str) -> str:
+def _package_name(path: str) -> str:
     package = package_of(path)
     return package[0] if package else ""
 
@@ -222,12 +225,12 @@ def _stem(path: str) -> str:
     return os.path.basename(os.path.dirname(path)) if is_model else stem
 
 
-def _links(it: Looked) -> Iterator[str]:
+def _link_names(it: Looked) -> Iterator[str]:
     for link in it.root.iter("link") if it.root is not None else ():
         yield link.get("name", "")
 
 
-def _moving(it: Looked) -> Iterator[str]:
+def _moving_joints(it: Looked) -> Iterator[str]:
     for joint in it.root.iter("joint") if it.root is not None else ():
         if joint.get("type", "fixed") != "fixed" and joint.get("name"):
             yield joint.get("name", "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A proposal -> the text of its fleet file, with the reason of each key as a comment."""
+"""Writes the fleet file of a proposal, with the reason of each key as a comment."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ _NO_MAP = "Nav2 waits for a map: write its yaml_filename for map_server into a p
 
 def text_of(it: Proposal, file: str) -> str:
     """Return the text of a fleet file at the path ``file``, with paths relative to its folder."""
-    lines = _lines(it, os.path.dirname(file) or os.curdir, os.path.basename(file))
+    lines = _file_lines(it, os.path.dirname(file) or os.curdir, os.path.basename(file))
     return "".join(f"{one_line(line) if line.startswith('#') else line}\n" for line in lines)
 
 
-def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
+def _file_lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     yield "# A fleet of robots, for multibot_rewrite. Change what you like, then:"
     yield f"#   multibot build {name} -o out/     writes everything that the robots need"
     yield f"#   multibot rehearse {name}          tries the plan on a real ROS graph, no simulator"
@@ -49,14 +49,14 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
             yield "# The other layouts:"
             others = (layout for layout in LAYOUTS if layout.name != choice.value)
             yield from (f"#   {layout.name}: {layout.about}" for layout in others)
-        yield f"{key}: {_flow(choice.value)}"
+        yield f"{key}: {_one_line(choice.value)}"
     # What all robots have, if they have one description, with the reasons.
     layout = it.keys["layout"].value
-    common = _of_member(it.members[0], folder, layout) if len(it.members) == 1 else ()
+    common = _member_keys(it.members[0], folder, layout) if len(it.members) == 1 else ()
     for key, (value, whys) in common:
         yield ""
         yield from (f"# {line}" for line in whys)
-        yield from _block(key, value)
+        yield from _key_lines(key, value)
     left = dict(_unused_files(it, folder))
     first = {os.path.relpath(path, folder) for path in (*it.refused, *it.broken)}
     home = os.path.relpath(it.members[0].looked.path, folder)
@@ -86,7 +86,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     yield ""
     yield "# Start poses in metres and radians: x, y, z, roll, pitch, yaw"
     yield "robots:"
-    yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
+    yield from (f"  - {_one_line(robot)}" for robot in _robot_rows(it, folder))
 
 
 def _lines_of_rows(rows: Iterable[Row], folder: str) -> Iterator[str]:
@@ -94,12 +94,12 @@ def _lines_of_rows(rows: Iterable[Row], folder: str) -> Iterator[str]:
 
 
 def _capped(lines: Iterable[str]) -> Iterator[str]:
-    yield from (f"# {line}" for line in _some(lines))
+    """Yield the first lines as comments, and how many more there are."""
+    yield from (f"# {line}" for line in _first_rows(lines))
 
 
 def _unused_files(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
-    """Yield what was refused, what cannot be read, and the files of the robots' packages that no robot
-    has, each with the reason."""
+    """Yield refused, unreadable and unused files, each with the reason."""
     for path, why in {**it.refused, **it.broken}.items():
         yield os.path.relpath(path, folder), why
     taken = {
@@ -116,20 +116,20 @@ def _unused_files(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
             yield os.path.relpath(path, folder), left[path]
 
 
-def _block(key: str, value: Any) -> Iterator[str]:
+def _key_lines(key: str, value: Any) -> Iterator[str]:
     if not isinstance(value, dict):
-        yield f"{key}: {_flow(value)}"
+        yield f"{key}: {_one_line(value)}"
         return
     yield f"{key}:"
-    yield from (f"  {name}: {_flow(inner)}" for name, inner in value.items())
+    yield from (f"  {name}: {_one_line(inner)}" for name, inner in value.items())
 
 
-def _flow(value: Any) -> str:
+def _one_line(value: Any) -> str:
     text = fleet_yaml(value, default_flow_style=True, width=inf)
     return text.removesuffix("\n").removesuffix("\n...")
 
 
-def _of_member(
+def _member_keys(
     member: Member, folder: str, layout: str
 ) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
     """Yield the keys of a description and its files, each with the reasons."""
@@ -145,12 +145,12 @@ def _of_member(
         yield "simulated", (here(looked.model), ("The same robot as the simulator gets it",))
     if looked.arguments:
         why = "Arguments of the xacro: {robot} stands for the robot's name"
-        yield "arguments", (dict(looked.arguments), (why, *_needed(looked)))
+        yield "arguments", (dict(looked.arguments), (why, *_argument_comments(looked)))
     if member.bringup:
         told = order_text(member.bringup.order, folder)
         config = next(iter(beside.files.get("rviz", ())), "")
         apart = why_for_each(config, layout)
-        yield "launch", (told, (*_launched(member.bringup, apart),))
+        yield "launch", (told, (*_launch_comments(member.bringup, apart),))
     if beside.srdf:
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
     if beside.node_sets:
@@ -167,9 +167,9 @@ def _of_member(
         yield "related_files", (files, whys)
 
 
-def _launched(it: Bringup, apart: str) -> Iterator[str]:
-    """Yield what a launch file starts, for each robot and once for all, and the other launch files;
-    ``apart`` is why each robot has its own RViz, if it has one."""
+def _launch_comments(it: Bringup, apart: str) -> Iterator[str]:
+    """Yield what a launch file starts for each robot and once for all, and other launch files."""
+    # ``apart`` is why each robot has its own RViz, if it has one.
     each = {node: apart if node.executable == RVIZ else "" for node in it.graph.nodes}
     whys = {node: "" if each[node] else once_for_all(node) for node in it.graph.nodes}
     texts = {it: said_of(it) + (f", {it.later}" if it.process.off else "") for it in whys}
@@ -180,28 +180,28 @@ def _launched(it: Bringup, apart: str) -> Iterator[str]:
     ]
     once = [f"{texts[node]}, since {why}" for node, why in whys.items() if why]
     yield f"What {it.name} starts for each robot:"
-    yield from _some(own)
+    yield from _first_rows(own)
     if once:
         yield "Once for all robots; `own_nodes: [NAME]` gives each its own:"
-        yield from _some(once)
+        yield from _first_rows(once)
     if idle := [f"{one.what}: {one.why}" for one in it.graph.idle]:
         yield "Not started, by its conditions; another value behind its file here starts it:"
-        yield from _some(idle)
+        yield from _first_rows(idle)
     if named := [name for name, value in it.order.arguments if ROBOT in value]:
         yield f"{', '.join(named)}: the name of the vendor's robot there; each robot has its own"
     if it.others:
         yield "It starts the most; others start this robot as well:"
-        yield from _some([f"--launch {order_text(one, os.curdir)}" for one in it.others])
+        yield from _first_rows([f"--launch {order_text(one, os.curdir)}" for one in it.others])
 
 
-def _some(rows: Iterable[str]) -> Iterator[str]:
+def _first_rows(rows: Iterable[str]) -> Iterator[str]:
     every = [*dict.fromkeys(rows)]
     yield from (f"  {row}" for row in every[:MOST])
     if every[MOST:]:
         yield f"  and {len(every) - MOST} more"
 
 
-def _needed(it: Looked) -> Iterator[str]:
+def _argument_comments(it: Looked) -> Iterator[str]:
     """Yield comments on arguments that the xacro needs, and on its simulated-or-real switch."""
     arguments = dict(it.arguments)
     if it.switch:
@@ -210,10 +210,10 @@ def _needed(it: Looked) -> Iterator[str]:
         yield f"It needs {', '.join(found)}; init chose a value: is it right?"
 
 
-def _robots(it: Proposal, folder: str) -> Iterator[dict[str, Any]]:
+def _robot_rows(it: Proposal, folder: str) -> Iterator[dict[str, Any]]:
     for member in it.members:
         layout = it.keys["layout"].value
-        own = _of_member(member, folder, layout) if len(it.members) > 1 else ()
+        own = _member_keys(member, folder, layout) if len(it.members) > 1 else ()
         keys = {key: value for key, (value, _) in own}
         for name in member.names:
             pose = {"pose": dict(it.poses[name])} if name in it.poses else {}

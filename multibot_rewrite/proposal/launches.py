@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The launch files of a repository, read behind fences: what each starts with any arguments, and what
-one starts with those that it is given."""
+"""Reads the launch files of a repository in the sandbox, with any or with given arguments."""
 
 import os
 import shlex
@@ -46,8 +45,9 @@ class Reading(NamedTuple):
 
 
 class Bringup(NamedTuple):
-    """The launch file that starts a robot, as it is launched, and what it starts; ``others`` start the
-    robot as well. ``is_simulated`` is true if it starts a simulator, or puts the robot into one."""
+    """The launch file that starts a robot, and what it starts; ``others`` start it as well.
+
+    ``is_simulated`` is true if it starts a simulator, or puts the robot into one."""
 
     order: LaunchOrder
     graph: LaunchGraph
@@ -85,14 +85,14 @@ def read_any(launch: Sequence[str]) -> list[Reading]:
 def read_as(orders: Iterable[LaunchOrder]) -> list[Reading]:
     """Return what launch files start, each as it is launched."""
     every = tuple(orders)
-    read = _read(every, tuple(times_of(it.file) for it in every)) if every else []
+    read = _read_in_one(every, tuple(times_of(it.file) for it in every)) if every else []
     for it in (one for one in read if one.graph.nodes and not one.order.every):
         keep(it.order, it.graph)
     return [it if it.order.every else it._replace(why=it.why or why_not(it.graph)) for it in read]
 
 
 @lru_cache(maxsize=16)
-def _read(orders: tuple[LaunchOrder, ...], times: tuple[object, ...]) -> list[Reading]:
+def _read_in_one(orders: tuple[LaunchOrder, ...], times: tuple[object, ...]) -> list[Reading]:
     """Read launch files in one process; ``times`` tell their changes."""
     read = read_launch_files(orders, _SECONDS)
     return [
@@ -112,8 +112,8 @@ def order_text(it: LaunchOrder, folder: str) -> str:
 
 
 def not_read(read: Iterable[Reading]) -> Iterator[Row]:
-    """Yield the first thing in each launch file that could not be read. The build reports what is
-    unknown of one node, not what a launch file asks of the machine or of a program."""
+    """Yield the first thing in each launch file that could not be read."""
+    # What is unknown of one node is reported by the build.
     for it in read:
         notes = [one for one in it.graph.notes if not one.missing]
         notes = [one for one in notes if not one.parameters or one.place.line == 1]

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A description -> what a fleet file has to know of it: simulator, xacro arguments, and the values for
-these that launch files have where nobody gave any."""
+"""Reads what a fleet file has to know of a description, with values from launch files."""
 
 import os
 import re
@@ -53,15 +52,14 @@ WORLD = "world"
 
 
 class Looked(NamedTuple):
-    """A description: the name in it, its root's tag, how many links it has, its simulator, whether it
-    has ``<ros2_control>``, for a simulator with the plugin that makes its controller manager.
+    """A description and what a fleet file has to know of it; ``fault`` is why it is unreadable.
 
-    ``arguments`` give each robot its own names (``{robot}`` is its name) or are needed to expand it;
-    ``needed`` are those of them that were not given, ``switch`` is the one that makes it the simulated
-    or the real robot. ``own_tf`` is whether its plugins send tf on a topic of each robot. ``model`` is
-    the file that the simulator gets, where that is another one. ``bringup`` is the launch file that
-    starts it, if there is one. ``fault`` is why it cannot be read; the rest is empty then.
-    """
+    ``control``: it has ``<ros2_control>``, for a simulator with the plugin that makes its
+    controller manager. ``arguments`` give each robot its own names (``{robot}`` is its name) or
+    are needed to expand it; ``needed`` are those that were not given, ``switch`` is the one that
+    makes it simulated or real. ``own_tf``: its plugins send tf on a topic of each robot.
+    ``model`` is the file that the simulator gets, where that is another one. ``bringup`` is the
+    launch file that starts it."""
 
     path: str
     name: str = ""
@@ -90,11 +88,10 @@ def filled_for_any(it: Looked) -> tuple[tuple[str, str], ...]:
 
 
 def look(path: str, given: Mapping[str, str], reach: Reach, values: "NeededValues") -> Looked:
-    """Return what a description is; ``given`` are values for arguments of xacros, others that it
-    needs get those of ``values``."""
+    """Return what a description is, with ``given`` arguments and those of ``values`` it needs."""
     known = dict(given)
     for _ in range(MOST_ARGUMENTS):
-        found = _look(path, known, reach)
+        found = _look_once(path, known, reach)
         if not found.fault:
             break
         needed = _NEEDED.search(found.fault)
@@ -108,7 +105,7 @@ def look(path: str, given: Mapping[str, str], reach: Reach, values: "NeededValue
     return found._replace(needed=tuple(it for it in known if it not in given))
 
 
-def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
+def _look_once(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
     try:
         xacro = path.endswith(".xacro")
         text = expand(path, filled(given, ANY), None, reach) if xacro else read_model(path)
@@ -120,9 +117,9 @@ def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
 def with_bringup(
     it: Looked, bringup: Bringup | None, given: Mapping[str, str], reach: Reach
 ) -> Looked:
-    """Return the description with the launch file that starts it, and the arguments that this gives
-    its xacro, unless they are the default. What was ``given`` counts, and what names a robot stays.
-    A launch file that loads hardware of a simulator is for one, whoever starts that."""
+    """Return the description with its launch file, and the arguments that this gives its xacro."""
+    # What was ``given`` counts, and what names a robot stays. A launch file that loads hardware of
+    # a simulator is for one, whoever starts that.
     launched = it._replace(bringup=bringup)
     read = bringup.graph.read if bringup and not it.model else ()
     own = next((dict(one.arguments) for one in read if one.file == os.path.realpath(it.path)), {})
@@ -134,7 +131,7 @@ def with_bringup(
         for name, value in _own_values(own.items(), it.path).items()
         if name not in given and defaults.get(name, own[name]) != own[name]
     }
-    other = _look(it.path, {**dict(it.arguments), **values}, reach)
+    other = _look_once(it.path, {**dict(it.arguments), **values}, reach)
     if other.fault:
         return launched
     needed = tuple(one for one in it.needed if one not in values)
@@ -154,8 +151,7 @@ def _own_values(given: Iterable[tuple[str, str]], path: str) -> dict[str, str]:
 
 
 def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
-    """Return the description with the xacro arguments that give each robot its own names, and
-    without those that it does not have."""
+    """Return the description with xacro arguments that name robots, without unknown ones."""
     if not it.path.endswith(".xacro"):
         return it
     given = dict(it.arguments)
@@ -191,8 +187,7 @@ def with_semantic_arguments(it: Looked, srdf: str, reach: Reach, values: "Needed
 
 
 def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
-    """Return the description with the arguments that name robots empty, except those that were
-    ``given`` or that it requires."""
+    """Return the description with empty arguments for names, unless given or needed."""
     kept = {*given, *it.needed}
     values = {
         name: value if name in kept or ROBOT not in value else "" for name, value in it.arguments
@@ -204,17 +199,17 @@ def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
     """Return the description with the argument that makes it simulated, or real, if it has one."""
 
     def suits_its_simulator(root: etree._Element) -> bool:
-        return _simulator(root) != NO_SIMULATOR and suits_simulator(root)
+        return _simulator_of(root) != NO_SIMULATOR and suits_simulator(root)
 
-    return _switched(it, suits_its_simulator if simulated else suits_real, reach)
+    return _with_switch(it, suits_its_simulator if simulated else suits_real, reach)
 
 
 def with_hardware_loaded(it: Looked, reach: Reach) -> Looked:
-    """Return the same with the argument by which a simulator's plugin loads its hardware, if any."""
-    return _switched(it, lambda root: loads_hardware(root) and suits_simulator(root), reach)
+    """Return it with the argument that makes a simulator's plugin load its hardware."""
+    return _with_switch(it, lambda root: loads_hardware(root) and suits_simulator(root), reach)
 
 
-def _switched(it: Looked, suits: Suits, reach: Reach) -> Looked:
+def _with_switch(it: Looked, suits: Suits, reach: Reach) -> Looked:
     given = dict(it.arguments)
     if it.model:
         return it
@@ -222,27 +217,27 @@ def _switched(it: Looked, suits: Suits, reach: Reach) -> Looked:
     if not found:
         return it
     name, value = found
-    other = _look(it.path, {**given, name: value}, reach)
+    other = _look_once(it.path, {**given, name: value}, reach)
     return it if other.fault else other._replace(needed=it.needed, switch=name, bringup=it.bringup)
 
 
 def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
-    """Return the description with the argument that names the controllers' file, if the manager's
-    plugin got none: launch files give it. The path is relative to the description's folder."""
+    """Return the description with the controllers' file as argument, if no plugin got one."""
+    # Launch files give it. The path is relative to the description's folder.
     file = next((one for one in files if "controller_manager" in text_of(one)), "")
     if not (it.control and file and it.path.endswith(".xacro") and _loads_nothing(it.root)):
         return it
     path = os.path.relpath(file, os.path.dirname(it.path))
     given = dict(it.arguments)
     for name in _EMPTY.findall(text_of(it.path)):
-        other = _look(it.path, {**given, name: path}, reach) if not given.get(name) else it
+        other = _look_once(it.path, {**given, name: path}, reach) if not given.get(name) else it
         if not other.fault and not _loads_nothing(other.root):
             return it._replace(arguments=(*it.arguments, (name, path)), root=other.root)
     return it
 
 
 def _loads_nothing(root: etree._Element | None) -> bool:
-    """Return whether the plugin that makes a controller manager has a file that nothing names."""
+    """Return whether all parameter files of a controller manager's plugin are empty."""
     parts = _gazebo_parts(root) if root is not None else []
     plugins = (it for part in parts for it in part.iter("plugin"))
     made = (it for it in plugins if "ros2_control" in (it.get("filename") or ""))
@@ -266,7 +261,7 @@ def _description_in(path: str, text: bytes, arguments: tuple[tuple[str, str], ..
         model.get("name", ""),
         str(root.tag),
         sum(1 for it in root.iter("link") if it.get("name")),
-        _simulator(root),
+        _simulator_of(root),
         _is_controlled(root),
         arguments,
         own_tf=any((it.text or "").strip() == "/tf:=tf" for it in rules),
@@ -280,7 +275,7 @@ def _is_controlled(root: etree._Element) -> bool:
         return False
     # gz_ros2_control, ign_ros2_control, gazebo_ros2_control and what vendors make of them.
     made = any("ros2_control" in it for it in _plugin_files(root))
-    return made or _simulator(root) == NO_SIMULATOR
+    return made or _simulator_of(root) == NO_SIMULATOR
 
 
 def _gazebo_parts(root: etree._Element) -> list[etree._Element]:
@@ -292,7 +287,7 @@ def _plugin_files(root: etree._Element) -> list[str]:
     return [it.get("filename") or "" for part in _gazebo_parts(root) for it in part.iter("plugin")]
 
 
-def _simulator(root: etree._Element) -> str:
+def _simulator_of(root: etree._Element) -> str:
     """Return the simulator, by the plugins of ``<gazebo>`` or an SDF; sensors alone are for gz-sim."""
     parts, files = _gazebo_parts(root), _plugin_files(root)
     if any(it.startswith(_CLASSIC) for it in files):
@@ -320,15 +315,13 @@ _ARGUMENT = re.compile(r"""<xacro:arg\b[^<>]*\bname=["'](\w+)["']""")
 
 
 class NeededValues(NamedTuple):
-    """Values for the arguments of xacros, by the launch files that are ``read``; what none of them
-    loads, another ``launch`` file may."""
+    """Values for xacro arguments from the launch files ``read``, or ``launch`` for other xacros."""
 
     read: Sequence[Reading]
     launch: Sequence[str] = ()
 
     def of(self, name: str) -> str:
-        """Return the value of an argument: the robot's name for one with such a name, otherwise
-        what a launch file gives or declares; empty where none does. Raises nothing."""
+        """Return an argument's value: the robot's name, or a launch file's; raises nothing."""
         if name in _PREFIX:
             return "{robot}_"
         if name in _NAME:
@@ -350,8 +343,7 @@ class NeededValues(NamedTuple):
         yield from read_any(self.launch)
 
     def of_mandatory(self, path: str) -> dict[str, str]:
-        """Return the arguments of a xacro that every launch has to choose a value for, with the
-        first value: the xacro's own default may be no value at all. Raises nothing."""
+        """Return arguments that every launch must choose, with the first value; raises nothing."""
         names = dict.fromkeys(_ARGUMENT.findall(text_of(path)))
         free = (it for it in names if not any(one.default for one in self._declared(it)))
         return {name: value for name in free if (value := self._choice(name))}

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which related files of a description belong to another one, by place and by what they name, and
-which of several parameter files for one node goes with it."""
+"""Finds related files of other descriptions, by place and names, and the best parameter file."""
 
 import os
 import re
@@ -57,27 +56,26 @@ def of_others(robot: Looked, found: Found) -> dict[str, str]:
 
 
 def of_other_robots(robots: Sequence[Looked], found: Found, release: str) -> list[set[str]]:
-    """Return for each robot of a fleet the files that are of another one: they are in its folders, or
-    in folders of both and called like it alone, or it alone has what they name."""
+    """Return for each robot of a fleet the files of the others, by folder, file name or names."""
     known = load_known_nodes("", release)
-    owners = {file: _owners(file, robots, known) for file in _related_files(found)}
+    owners = {file: _owners_of(file, robots, known) for file in _related_files(found)}
     return [{file for file, its in owners.items() if robot not in its} for robot in robots]
 
 
-def _owners(file: str, robots: Sequence[Looked], known: KnownNodes) -> list[Looked]:
+def _owners_of(file: str, robots: Sequence[Looked], known: KnownNodes) -> list[Looked]:
     near = {it: _shared_depth(os.path.dirname(it.path), file) for it in robots}
     nearest = [it for it in robots if near[it] == max(near.values())]
     likely = [it for it in nearest if _is_called_like(file, it)] or nearest
     if not likely[1:] or not file.endswith((".yaml", ".yml")):
         return likely
-    lacked = [_lacked(it, file, known) for it in likely]
+    lacked = [_lacked_names(it, file, known) for it in likely]
     fits = (not any(less < names for less in lacked) for names in lacked)
     return [*compress(likely, fits)]
 
 
-def _lacked(robot: Looked, file: str, known: KnownNodes) -> set[str]:
-    """Return what a file of parameters or of a bridge names and the robot has not; for nodes that drive
-    their packages, if no wheel turns."""
+def _lacked_names(robot: Looked, file: str, known: KnownNodes) -> set[str]:
+    """Return what a parameter or bridge file names and the robot has not."""
+    # Of nodes that drive their packages, if no wheel turns.
     root = robot.root if robot.root is not None else etree.Element("robot")
     try:
         document = read_yaml(data_of_file(file), file)
@@ -110,8 +108,8 @@ def _shared_depth(folder: str, file: str) -> int:
 
 
 def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
-    """Yield files of the description's package that are nearer to another description: a folder of
-    examples has files of several robots."""
+    """Yield files of the description's package that are nearer to another description."""
+    # A folder of examples has files of several robots.
     others = {os.path.dirname(it): it for it in reversed(found.every)}
     own, base = os.path.dirname(robot), home_of(robot)
     for file in _related_files(found):
@@ -122,14 +120,14 @@ def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
 
 
 def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield files that are not nearer to the robot and name parts of another description."""
+    """Yield files that name parts of another description and are not nearer to the robot."""
     own = frozenset(_expanded_names(robot)) | _names_in(robot.path)
     names = {it: _names_in(it) for it in found.every[:MOST] if it != robot.path}
     others = {path: its for path, its in names.items() if not its <= own}
     for file in files if others else ():
-        words = _words(file)
-        mine = _known(words, own)
-        rivals = {path: _known(words, its) for path, its in others.items()}
+        words = _words_in(file)
+        mine = _known_names(words, own)
+        rivals = {path: _known_names(words, its) for path, its in others.items()}
         best = max(rivals, key=lambda it: (len(rivals[it]), it))
         theirs = rivals[best]
         at = _shared_depth(os.path.dirname(best), file)
@@ -140,8 +138,8 @@ def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterato
             yield file, f"it is for {os.path.basename(best)}, which has {named}"
 
 
-def _known(words: _Words, names: frozenset[str]) -> frozenset[str]:
-    """Return the names that a file has: a plain word such as camera only as a value."""
+def _known_names(words: _Words, names: frozenset[str]) -> frozenset[str]:
+    """Return the names that a file has; a plain name such as camera counts only as a value."""
     return frozenset(it for it in names & words.all if it in words.values or _is_specific(it))
 
 
@@ -155,8 +153,8 @@ LEAST = 50
 
 
 def hundredths_known(robot: Looked, path: str) -> int:
-    """Return how many of a hundred links and joints that an SRDF or RViz config names are the
-    robot's; 100 for a file that names none."""
+    """Return the percentage of links and joints in an SRDF or RViz config that are the robot's."""
+    # 100 for a file that names none.
     if path.endswith(".rviz"):
         named = names_shown(path)
     else:
@@ -170,11 +168,11 @@ def hundredths_known(robot: Looked, path: str) -> int:
 def own_names(robot: Looked) -> frozenset[str]:
     """Return its links and joints: as they are, without what its arguments put in front, as written."""
     made = frozenset(_expanded_names(robot))
-    return made | _plain(robot, made) | _names_in(robot.path)
+    return made | _without_prefixes(robot, made) | _names_in(robot.path)
 
 
-def _plain(robot: Looked, names: frozenset[str]) -> frozenset[str]:
-    """Return the names without what the arguments for its names put in front."""
+def _without_prefixes(robot: Looked, names: frozenset[str]) -> frozenset[str]:
+    """Return names without the prefixes that the robot's arguments add."""
     given = [it.rstrip("_/") for _, it in filled_for_any(robot) if ANY in it]
     fronts = tuple(f"{it}{end}" for it in given for end in "_/")
     front = {name: next((it for it in fronts if name.startswith(it)), "") for name in names}
@@ -182,18 +180,18 @@ def _plain(robot: Looked, names: frozenset[str]) -> frozenset[str]:
 
 
 def semantic_names(robot: Looked, path: str) -> tuple[frozenset[str], frozenset[str]]:
-    """Return the links and joints that an SRDF names, and its groups: with the robot's arguments,
-    if it is a xacro; as written if that cannot be expanded."""
+    """Return the links and joints that an SRDF names, and its groups."""
+    # With the robot's arguments if it is a xacro; as written if that cannot be expanded.
     if path.endswith(".xacro"):
         with suppress(InputError):
-            names, groups = _semantics(path, filled_for_any(robot))
-            return _plain(robot, names), _plain(robot, groups)
+            names, groups = _expanded_srdf(path, filled_for_any(robot))
+            return _without_prefixes(robot, names), _without_prefixes(robot, groups)
     data = data_of_file(path)
     return _names_in(path), frozenset(it.decode("utf-8", "replace") for it in _GROUP.findall(data))
 
 
 @lru_cache(maxsize=MOST)
-def _semantics(
+def _expanded_srdf(
     path: str, given: tuple[tuple[str, str], ...]
 ) -> tuple[frozenset[str], frozenset[str]]:
     data = expand(path, dict(given), None, BOUNDED)
@@ -209,7 +207,7 @@ def best_folders(robot: Looked, srdf: str, paths: Iterable[str]) -> dict[str, in
     found: dict[str, int] = {}
     for path in paths:
         folder = os.path.dirname(path)
-        found[folder] = found.get(folder, 0) + len(_words(path).all & own)
+        found[folder] = found.get(folder, 0) + len(_words_in(path).all & own)
     return found
 
 
@@ -232,13 +230,13 @@ def _names_in(path: str) -> frozenset[str]:
 
 
 def names_of_files(found: Found) -> frozenset[str]:
-    """Return the words that descriptions' related files have as values, and specific ones as keys."""
-    words = [_words(it) for it in _related_files(found)]
+    """Return the values in related files, and their keys if these are specific names."""
+    words = [_words_in(it) for it in _related_files(found)]
     keys = (name for it in words for name in it.all if _is_specific(name))
     return frozenset(keys).union(*(it.values for it in words)) - {*SENT_FRAMES}
 
 
-def _words(path: str) -> _Words:
+def _words_in(path: str) -> _Words:
     data = data_of_file(path)
     texts = data, _KEY.sub(b"", data)
     found = (frozenset(_WORD.findall(it.decode("utf-8", "replace"))) for it in texts)
@@ -246,13 +244,12 @@ def _words(path: str) -> _Words:
 
 
 def moveit_of_others(robot: Looked, srdf: str, found: Found) -> Mapping[str, str]:
-    """Return MoveIt's files that are nearer to another SRDF than to the one that is taken, or are for
-    the kinematics of groups that it has not."""
+    """Return MoveIt files that are nearer to another SRDF, or for groups that this one lacks."""
     left = {}
     groups = semantic_names(robot, srdf)[1]
     for file in found.moveit:
         is_kinematics = os.path.splitext(os.path.basename(file))[0] == "kinematics"
-        if is_kinematics and groups and not _words(file).all & groups:
+        if is_kinematics and groups and not _words_in(file).all & groups:
             left[file] = f"it names no group of {os.path.basename(srdf)}"
         best = max(found.srdf, key=lambda it: _shared_depth(os.path.dirname(it), file))
         if _shared_depth(os.path.dirname(best), file) > _shared_depth(os.path.dirname(srdf), file):
@@ -271,14 +268,14 @@ class Fitting(NamedTuple):
 def fitting(
     robot: Looked, path: str, nodes: Sequence[Run], known: KnownNodes, bridges: Iterable[str]
 ) -> Fitting:
-    """Return how a file fits a robot: whether its frames, links and joints are those of the
-    description, and sensors' topics of several words are in it or in a bridge."""
+    """Return how a file fits a robot: its nodes, and names that the robot has not."""
+    # Frames, links and joints must be the description's; topics of several words may be a bridge's.
     own = own_names(robot) | {*SENT_FRAMES}
     text = etree.tostring(robot.root).decode() if robot.root is not None else ""
     said = "\n".join((text, *map(text_of, bridges)))
     found = {
         value
-        for kind, value in _named(nodes, known)
+        for kind, value in _named_in_values(nodes, known)
         if (value not in own if kind in _OF_ROBOT else _is_missing_below_namespace(value, said))
     }
     names = frozenset(word for it in nodes for word in (it.node, it.fact.known) if word)
@@ -286,9 +283,8 @@ def fitting(
 
 
 def not_started(path: str, nodes: Sequence[Run], known: KnownNodes) -> str:
-    """Return why a file of another package is not the robot's, if no launch file starts that
-    package; empty if it may be. It is an example next to a node's code, or its nodes are
-    unknown."""
+    """Return why another package's file is not the robot's; empty if it may be."""
+    # It is an example next to a node's code, or its nodes are unknown.
     own = package_of(path)
     packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
     if own and own[0] in packages:
@@ -297,7 +293,7 @@ def not_started(path: str, nodes: Sequence[Run], known: KnownNodes) -> str:
     return "" if packages else f"it is for {who}, which no launch file of the robot starts"
 
 
-def _named(nodes: Iterable[Run], known: KnownNodes) -> Iterator[tuple[str, str]]:
+def _named_in_values(nodes: Iterable[Run], known: KnownNodes) -> Iterator[tuple[str, str]]:
     """Yield the names in values of known parameters, each with its kind."""
     for node in (it for it in nodes if it.fact.known in known.nodes):
         params = [*known.nodes[node.fact.known].params.values()]
@@ -315,8 +311,7 @@ def _is_missing_below_namespace(topic: str, said: str) -> bool:
 
 
 def check_winner(its: Sequence[Fitting], robot: Looked, found: Found) -> None:
-    """Raise Undecided where two files for one node go as badly with the robot: each has names that it
-    has not. A file without any has no rival."""
+    """Raise Undecided if two files for one node have as many names that the robot has not."""
     for at, best in enumerate(its):
         if any(best.nodes & it.nodes for it in its[:at]):
             continue

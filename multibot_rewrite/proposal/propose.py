@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Descriptions and folders -> a proposal for a fleet file."""
+"""Makes a proposal for a fleet file of descriptions and folders."""
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -61,8 +61,9 @@ OF_CLASSIC = "humble"
 
 
 class Member(NamedTuple):
-    """A description with its files; ``names`` are the robots of it, ``radius`` how far it reaches from
-    its base in metres. ``is_real`` is true for robots that are real among simulated ones."""
+    """A description with its files; ``names`` are its robots, ``radius`` is their reach in metres.
+
+    ``is_real`` is true for robots that are real among simulated ones."""
 
     looked: Looked
     related_files: RelatedFiles
@@ -84,12 +85,13 @@ class Choice(NamedTuple):
 
 
 class Proposal(NamedTuple):
-    """A fleet: its keys with their reasons, in the order in which they are written; its robots with
-    their poses. ``notes`` are said at the head of the file, ``others`` are descriptions not taken,
-    ``refused`` files that do not go with the robots and ``broken`` descriptions that cannot be read,
-    each with the reason. ``started`` is what launch files start where none of them is the robot's,
-    ``unread`` what could not be read of those of the robots, ``others_unread`` of other ones.
-    ``chosen`` is what is not as the files have it, so that the fleet builds."""
+    """A fleet: its keys with reasons, in their order, its robots and their poses.
+
+    ``notes`` are for the head of the file, ``others`` are unused descriptions, ``refused`` files
+    that do not go with the robots and ``broken`` unreadable descriptions, each with the reason.
+    ``started`` is what launch files start if none is the robot's, ``unread`` what could not be
+    read of the robots' launch files, ``others_unread`` of other ones. ``chosen`` is what differs
+    from the files so that the fleet builds."""
 
     keys: Mapping[str, Choice]
     members: Sequence[Member]
@@ -150,8 +152,8 @@ def simulator_of(members: Sequence[Member]) -> Choice:
 
 
 def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
-    """Return a frame of its own for each real robot whose description is fixed to the world, which
-    is at its pose in the map. A simulator needs one world."""
+    """Return a shared frame for real robots whose descriptions are fixed to the world."""
+    # Each has its own world, at its pose in the map; a simulator needs one world.
     if not is_real or not any(holds_the_world(it.looked) for it in members):
         return {}
     why = "the description fixes the robot to a link `world`: each robot has its own, placed in map"
@@ -159,8 +161,8 @@ def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
 
 
 def poses_of(members: Sequence[Member], apart: float) -> Mapping[str, Mapping[str, float]]:
-    """Return a place for each robot, in a row along y, so many metres ``apart``; with 0 as they are
-    wide. None for a real one whose description has its place in the map."""
+    """Return a pose for each robot, in a row along y, ``apart`` in metres; 0: by their widths."""
+    # None for a real robot whose description has its place in the map.
     found: dict[str, dict[str, float]] = {}
     y = before = 0.0
     for member in members:
@@ -180,7 +182,7 @@ def names_of(stems: Sequence[str], count: int) -> list[tuple[str, ...]]:
 
 
 def unlike(words: Iterable[str]) -> list[str]:
-    """Return the words as names of robots, made different where they are equal."""
+    """Return names for robots that are made of these and differ from each other."""
     found: list[str] = []
     for word in words:
         plain = "".join(it if it.isalnum() else "_" for it in word.lower()).strip("_") or "robot"
@@ -191,8 +193,7 @@ def unlike(words: Iterable[str]) -> list[str]:
 
 
 def release_of(robots: Sequence[Looked], found: Found, wanted: Wanted) -> Choice:
-    """Return the release that was asked for, otherwise the one that the robots' simulator and
-    plugins, their repository or their parameter files show."""
+    """Return the release: asked for, or by the simulator, plugins, repository or parameters."""
     if wanted.named:
         return Choice(wanted.release, "the ROS 2 release that was asked for")
     if any(it.simulator == CLASSIC for it in robots):
@@ -217,7 +218,7 @@ def propose(
     kept = without(found, refused)
     shared_out = [without(kept, its) for its in of_other_robots(robots, kept, release.value)]
     members = [
-        _member(
+        _member_of(
             it, _related_files(it, own, release.value, wanted), called, Reach(trust=wanted.trust)
         )
         for it, own, called in zip(robots, shared_out, names, strict=True)
@@ -263,7 +264,7 @@ def _related_files(it: Looked, found: Found, release: str, wanted: Wanted) -> Re
     return made._replace(node_sets={**made.node_sets, **asked})
 
 
-def _member(it: Looked, beside: RelatedFiles, names: tuple[str, ...], reach: Reach) -> Member:
+def _member_of(it: Looked, beside: RelatedFiles, names: tuple[str, ...], reach: Reach) -> Member:
     own = with_controllers(it, beside.files.get("params", ()), reach)
     assert own.root is not None
     return Member(own, beside, names, reach_of(own.root) or UNKNOWN_RADIUS)
@@ -280,9 +281,8 @@ _ENOUGH = 2
 
 
 def release_of_files(paths: Sequence[str]) -> SaidRelease:
-    """Return the release that has most of what the parameter files set, if another one clearly has
-    less; without a reason if all are alike."""
-    lacking = {release: _lacking(paths, release) for release in _ORDER}
+    """Return the release that knows most of what parameter files set; no reason if many do."""
+    lacking = {release: _files_lacking(paths, release) for release in _ORDER}
     most = len(lacking[NEWEST_LTS])
     best = min(_ORDER, key=lambda it: len(lacking[it]))
     if most - len(lacking[best]) < _ENOUGH:
@@ -293,7 +293,7 @@ def release_of_files(paths: Sequence[str]) -> SaidRelease:
     )
 
 
-def _lacking(paths: Sequence[str], release: str) -> list[str]:
+def _files_lacking(paths: Sequence[str], release: str) -> list[str]:
     """Return the file of each parameter, and of each plugin class, that a release does not have."""
     context = make_context({}, make_naming("tf-per-robot"), (), release)
     found = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The related files of a description -> those that it runs with, and the node sets that they say.
+"""Chooses the related files that a description runs with, and the node sets in them.
 
 Where several files are for the same thing (parameters of a node, an RViz config), the nearest is taken.
 """
@@ -15,6 +15,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.producers.launch.known_node import lua_file
 from multibot_rewrite.proposal.choosing import is_srdf_launched, loaded
 from multibot_rewrite.proposal.launches import Bringup
 from multibot_rewrite.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
@@ -77,10 +78,10 @@ def related_files_of(robot: Looked, found: Found, release: str) -> RelatedFiles:
     left |= strange
     found = without(found, strange)
     files = {
-        kind: tuple(_of_kind(kind, robot, getattr(found, kind), left, packages=own))
+        kind: tuple(_files_of_kind(kind, robot, getattr(found, kind), left, packages=own))
         for kind in kinds
     }
-    sections = dict(_sections(_fitting(robot, found, release, left), left))
+    sections = dict(_nodes_by_file(_fitting_files(robot, found, release, left), left))
     idle = _controllers_of_others(robot, sections)
     left |= idle
     if robot.simulator == NO_SIMULATOR:
@@ -109,8 +110,7 @@ def _best_srdf(robot: Looked, found: Found) -> str:
 
 
 def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]) -> dict[str, str]:
-    """Return, with the reason, controller files of a real robot whose simulated one is driven by
-    other plugins, and those that a description has nothing to move for."""
+    """Return controller files that nothing in the description needs, with the reason."""
     if robot.control:
         return {}
     reason = "no plugin of the simulated robot makes a controller manager"
@@ -120,18 +120,17 @@ def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]
 
 
 def moveit_files(robot: Looked, srdf: str, found: Found, left: dict[str, str]) -> tuple[str, ...]:
-    """Return MoveIt's files of the folder with most names of the robot and its groups, then of
-    others; those ``left`` out get a reason there."""
+    """Return MoveIt's files of the best folder first; those ``left`` out get a reason there."""
     if not srdf:
         return ()
     left |= moveit_of_others(robot, srdf, found)
     every = tuple(it for it in found.moveit if it not in left)
     known = best_folders(robot, srdf, every)
-    near = _of_kind("moveit", robot, every, left, lambda it: -known[os.path.dirname(it)])
+    near = _files_of_kind("moveit", robot, every, left, lambda it: -known[os.path.dirname(it)])
     return tuple(near)
 
 
-def _of_kind(
+def _files_of_kind(
     kind: str,
     robot: Looked,
     every: Sequence[str],
@@ -139,10 +138,10 @@ def _of_kind(
     rank: Callable[[str], int] = lambda _: 0,
     packages: Container[object] = (),
 ) -> Iterator[str]:
-    """Yield the files of a kind by their rank, nearest first; only one of equal base names, or if
-    one is enough. An RViz config of the robot's ``packages`` goes before others."""
+    """Yield the files of a kind, nearest first, one of equal base names or one in all."""
+    # An RViz config of the robot's ``packages`` goes before others.
     taken: dict[str, str] = {}
-    near = _nearest(robot, every)
+    near = _nearest_first(robot, every)
     if kind == "rviz":
         near = sorted(_best_known(robot, every), key=lambda it: package_of(it) not in packages)
     for path in sorted(near, key=rank):
@@ -154,15 +153,16 @@ def _of_kind(
             yield path
 
 
-def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) -> Iterator[Fitting]:
-    """Yield the readable parameter files: named ones, first the one after the robot's description,
-    then those with fewest names that the robot lacks, then the nearest. Raises Undecided if none is
-    the likeliest for a node."""
+def _fitting_files(
+    robot: Looked, found: Found, release: str, left: dict[str, str]
+) -> Iterator[Fitting]:
+    """Yield the readable parameter files, the likeliest first; raises Undecided."""
+    # Named ones come first, then those with fewest names that the robot lacks, then the nearest.
     known = load_known_nodes("", release)
-    loaded = {*_loaded(robot)}
+    loaded = {*_loaded_files(robot)}
     asked = {*filter(lambda it: it in found.meant or os.path.abspath(it) in loaded, found.params)}
     read = []
-    for path in _nearest(robot, found.params):
+    for path in _nearest_first(robot, found.params):
         try:
             nodes = given_nodes([read_yaml(read_file(path), path)], known)
         except InputError as error:
@@ -181,7 +181,7 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
     yield from order
 
 
-def _sections(
+def _nodes_by_file(
     read: Iterable[Fitting], left: dict[str, str]
 ) -> Iterator[tuple[str, frozenset[str]]]:
     """Yield parameter files and their nodes, without files that repeat a node of an earlier one."""
@@ -202,8 +202,7 @@ def _with_others_names(robot: Looked, found: Found) -> dict[str, str]:
 
 
 def _of_other_packages(found: Found, own: Collection[tuple[str, str] | None]) -> dict[str, str]:
-    """Return RViz configs of packages that neither have nor launch the robot, and that show none of
-    its links: those of a vendor's driver."""
+    """Return RViz configs of packages that neither have nor launch the robot, nor show a link."""
     own = {*own, None}
     apart = (it for it in found.rviz if package_of(it) not in own and it not in found.meant)
     reason = "it is of a package that does not launch the robot"
@@ -212,14 +211,13 @@ def _of_other_packages(found: Found, own: Collection[tuple[str, str] | None]) ->
 
 def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:
     """Return the paths sorted: those with most of the robot's names first, then the nearest."""
-    return sorted(_nearest(robot, paths), key=lambda it: -hundredths_known(robot, it))
+    return sorted(_nearest_first(robot, paths), key=lambda it: -hundredths_known(robot, it))
 
 
-def _nearest(robot: Looked, paths: Sequence[str]) -> list[str]:
-    """Return the paths in order: those that the description loads, then those of its own package,
-    then by how much they are like its own path."""
+def _nearest_first(robot: Looked, paths: Sequence[str]) -> list[str]:
+    """Return the paths: first those the description loads, then its package's, then similar."""
     words, home = set(_WORD.findall(robot.path.lower())), package_of(robot.path)
-    loaded = set(_loaded(robot))
+    loaded = set(_loaded_files(robot))
 
     def distance(path: str) -> tuple[bool, bool, int, int, str]:
         like = len(words & set(_WORD.findall(path.lower())))
@@ -230,7 +228,7 @@ def _nearest(robot: Looked, paths: Sequence[str]) -> list[str]:
     return sorted(paths, key=distance)
 
 
-def _loaded(robot: Looked) -> Iterator[str]:
+def _loaded_files(robot: Looked) -> Iterator[str]:
     """Yield the parameter files that plugins of the description load."""
     for it in robot.root.iter("parameters") if robot.root is not None else ():
         yield os.path.abspath((it.text or "").strip())
@@ -260,8 +258,8 @@ def _node_sets(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[t
 def related_files_launched(
     robot: Looked, bringup: Bringup, found: Found, release: str, asked: Mapping[str, str]
 ) -> RelatedFiles:
-    """Return what the launch file of a robot gives its nodes, but for the parameter files that a build
-    finds there itself, and what goes with the node sets that were ``asked`` for."""
+    """Return the files that a robot's launch file gives nodes, and those of ``asked`` node sets."""
+    # Without the parameter files that a build finds there itself.
     graph = bringup.graph
     # The words and texts that nodes get, in which the files that they read are named.
     words = "\n".join((*(word for it in graph.nodes for word in it.arguments), *graph.texts))
@@ -271,10 +269,13 @@ def related_files_launched(
 
     files = {kind: [*filter(is_read, getattr(found, kind))] for kind in _NAMED}
     files["rviz"] = [*{os.path.basename(it): it for it in reversed(files["rviz"])}.values()][::-1]
+    files["lua"] = [*filter(os.path.isfile, (lua_file(it.arguments) for it in graph.nodes))]
     lost = [it for it in graph.includes if not os.path.isabs(it.file)]
     handed = "\n".join(value for it in lost for _, value in it.arguments)
     params = [it for it in found.params if it in found.meant or os.path.realpath(it) in handed]
-    params += _of_sets(related_files_of(robot, found, release), asked, release) if asked else []
+    params += (
+        _files_of_sets(related_files_of(robot, found, release), asked, release) if asked else []
+    )
     starts = any(it.executable == _MOVEIT for it in graph.nodes)
     # A launch file may start a move_group by a package that is not here.
     texts = (text_of(it) for it in (bringup.order.file, *(one.file for one in graph.includes)))
@@ -292,7 +293,7 @@ def related_files_launched(
     return RelatedFiles(kept, srdf, {**node_sets, **asked}, {})
 
 
-def _of_sets(guessed: RelatedFiles, node_sets: Mapping[str, str], release: str) -> list[str]:
+def _files_of_sets(guessed: RelatedFiles, node_sets: Mapping[str, str], release: str) -> list[str]:
     """Return the parameter files that have a node of the node sets."""
     nodes = {os.path.basename(it.name) for one in node_sets for it in load_node_set(one, release)}
     every = guessed.files.get("params", ())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Folders -> the files of robots in them, by what they are for.
+"""Finds the files of robots in folders, by what they are for.
 
 A xacro counts as a description if it names a robot and no other file includes it.
 """
@@ -93,7 +93,7 @@ class Found(NamedTuple):
 
     @property
     def words(self) -> list[str]:
-        """What says the launch file that was named; raises nothing."""
+        """The arguments that name the launch files, ``--launch FILE ...``; raises nothing."""
         words = (shlex.split(order_text(it, os.curdir)) for it in self.named)
         return [word for it in words for word in ("--launch", *it)]
 
@@ -106,9 +106,10 @@ class Found(NamedTuple):
 
 
 def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
-    """Return the files found for the named descriptions and folders, or for the ``launch`` file,
-    which then is the only one. A description brings the files of its package; raises UsageError for
-    a path that does not exist, InputError for a file of another kind."""
+    """Return the files of named descriptions and folders, or of the only ``launch`` file.
+
+    A description brings the files of its package. Raises UsageError for a path that does not
+    exist, InputError for a file of another kind."""
     for path in paths:
         if not os.path.exists(path):
             link = os.path.islink(path)
@@ -127,10 +128,10 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
         refuse_others(data_of_file(path), path, *DESCRIPTIONS)
     apart = (it for it in files if not any(is_below(it, folder) for folder in folders))
     homes = dict.fromkeys((*folders, *map(home_of, apart)))
-    below = (path for home in homes for path in _files(home, home in folders))
+    below = (path for home in homes for path in _candidates(home, home in folders))
     every = dict.fromkeys((*below, *meant))
-    told = dict(_sorted(every, [*map(read_named, launch)]))
-    written = {*_rewritten(told)} - {*named}
+    told = dict(_with_kinds(every, [*map(read_named, launch)]))
+    written = {*_rewritten_files(told)} - {*named}
     kinds = lists_by_key((kind, path) for path, kind in told.items() if path not in written)
     kinds["every"] = kinds.get("descriptions", [])
     if files:
@@ -145,8 +146,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
 
 
 def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
-    """Return real path -> path of the descriptions that a launch file reads, gives to a node, or has in
-    a world that it starts. The path is as the search found it, otherwise relative."""
+    """Return the paths of descriptions that a launch file reads, gives or puts in a world."""
+    # By real path; the path is as the search found it, otherwise relative.
     known = {os.path.realpath(it): it for it in found.every}
     ends = tuple(known_names()["ends"])
     words = (it for node in graph.nodes for it in node.arguments if it.endswith(ends))
@@ -156,7 +157,7 @@ def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
     models = (it for it, uri in uris.items() if any(uri in text for text in texts))
     own = {it: known.get(it) or os.path.relpath(it) for it in (*real, *models)}
     there = (it for it in own if it not in known and os.path.isfile(it))
-    read = {it for it in there if _kind(it, data_of_file(it)) == "descriptions"}
+    read = {it for it in there if _field_of(it, data_of_file(it)) == "descriptions"}
     return {it: path for it, path in own.items() if it in known or it in read}
 
 
@@ -198,9 +199,8 @@ def is_below(path: str, folder: str) -> bool:
     return os.path.abspath(path).startswith(above)
 
 
-def _files(folder: str, with_packages: bool) -> Iterator[str]:
-    """Yield the files below a folder that may be a robot's; those of packages in it are of other
-    robots, unless the folder was named."""
+def _candidates(folder: str, with_packages: bool) -> Iterator[str]:
+    """Yield the files below a folder that may be a robot's, not those of other packages in it."""
     seen = 0
     ends = tuple(known_names()["ends"])
     for above, folders, names in os.walk(folder):
@@ -225,14 +225,14 @@ def _can_be_named(path: str) -> bool:
     return path.isascii() or not any("\ud800" <= it <= "\udfff" for it in path)
 
 
-def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[str, str]]:
+def _with_kinds(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[str, str]]:
     """Yield each path with its kind; files that are only included have none."""
     kinds: dict[str, str] = {}
 
     def texts() -> Iterator[tuple[str, bytes]]:
         for path in paths:
             data = data_of_file(path)
-            kinds[path] = _kind(path, data)
+            kinds[path] = _field_of(path, data)
             yield path, data
 
     parts = parts_among(kinds, includers(texts()))
@@ -246,10 +246,9 @@ def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[st
     )
 
 
-def _rewritten(paths: Iterable[str]) -> Iterator[str]:
-    """Yield the files that urdf-postfix has written: those with its comments, and those that are others
-    with a robot's name at their names. Such a description has it at each link; what goes with
-    descriptions is known by the name in one of them."""
+def _rewritten_files(paths: Iterable[str]) -> Iterator[str]:
+    """Yield the files that urdf-postfix has written, by its comments or the robot's names."""
+    # Such a description has the name at each link; what goes with descriptions is known by it.
     texts = {it: data_of_file(it) for it in sorted(paths, key=lambda it: not it.endswith(_XML))}
     marked = {it: found for it, text in texts.items() if (found := _REWRITTEN.search(text))}
     yield from marked
@@ -275,7 +274,7 @@ def text_of(path: str) -> str:
     return data_of_file(path).decode("utf-8", "replace")
 
 
-def _kind(path: str, data: bytes) -> str:
+def _field_of(path: str, data: bytes) -> str:
     """Return the field of ``Found`` that a file goes into; empty for none."""
     stem, end = os.path.splitext(os.path.basename(path))
     above = os.path.basename(os.path.dirname(path))
@@ -288,17 +287,17 @@ def _kind(path: str, data: bytes) -> str:
     return "" if kind == "descriptions" and _REWRITTEN.search(data) else kind
 
 
-def _of_model(_: str, data: bytes) -> str:
-    """Return the kind of a file by what also recognizes a file that is named."""
+def _kind_of_model(_: str, data: bytes) -> str:
+    """Return the kind of a file by its contents, as for a named file."""
     kind = recognised(data)
     if kind == SDF and (b"<model" not in data or _STATIC.search(data)):
         return ""
     return _BY_KIND.get(kind, "")
 
 
-def _of_xacro(stem: str, data: bytes) -> str:
+def _kind_of_xacro(stem: str, data: bytes) -> str:
     """Return the kind of a xacro; one that names no robot is a part of others."""
-    kind = _of_model(stem, data)
+    kind = _kind_of_model(stem, data)
     if kind != "descriptions" or recognised(data) == SDF:
         return kind
     if not _ROBOT.search(data):
@@ -306,7 +305,7 @@ def _of_xacro(stem: str, data: bytes) -> str:
     return "srdf" if ".srdf" in stem or b"<group " in data else kind
 
 
-def _of_yaml(stem: str, data: bytes) -> str:
+def _kind_of_yaml(stem: str, data: bytes) -> str:
     if b"ros__parameters" in data:
         return "params"
     if _BRIDGE.search(data) and _is_list(data):
@@ -324,8 +323,8 @@ def _is_list(data: bytes) -> bool:
 _BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}
 _BY_KIND = {WORLD: "worlds", SRDF: "srdf", **dict.fromkeys(DESCRIPTIONS, "descriptions")}
 _BY_TEXT: Mapping[str, Callable[[str, bytes], str]] = {
-    **dict.fromkeys((".urdf", ".sdf", ".model", ".world"), _of_model),
-    ".xacro": _of_xacro,
-    ".yaml": _of_yaml, ".yml": _of_yaml,
+    **dict.fromkeys((".urdf", ".sdf", ".model", ".world"), _kind_of_model),
+    ".xacro": _kind_of_xacro,
+    ".yaml": _kind_of_yaml, ".yml": _kind_of_yaml,
     ".xml": lambda _, data: "behavior_trees" if b"<BehaviorTree" in data else "",
 }  # fmt: skip

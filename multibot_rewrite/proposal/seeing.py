@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is asked for -> the descriptions that may be meant, the likeliest first."""
+"""Finds the descriptions that may be meant, the likeliest first."""
 
 import os
 import shlex
@@ -49,11 +49,11 @@ MOST_PARTNERS = 5
 
 
 class Wanted(NamedTuple):
-    """What is asked for: files and folders, robots of each description or their names, values of
-    xacro arguments, the release and whether somebody named it, a layout if not the one that the
-    files are made for, metres from robot to robot if not as they are wide, whether xacros may do
-    anything, a simulator or "none" if not what the files are for. ``file`` is the fleet file to be
-    written, ``tell`` is told what is being checked."""
+    """What is asked for: paths, robots of each description, xacro arguments, release and more.
+
+    ``named``: the release was asked for. ``layout``, metres ``apart`` and ``simulator`` are
+    empty if they follow from the files. ``file`` is the fleet file to be written, ``tell`` shows
+    what is being checked."""
 
     paths: tuple[str, ...]
     each: int
@@ -72,9 +72,10 @@ class Wanted(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """What there is: the files, and descriptions that may be meant, the likeliest first; ``named`` is
-    true for those that were asked for, all of which count. ``rivals`` are as likely as the first,
-    ``alike`` are other files of it, ``broken`` those that cannot be read, each with the reason."""
+    """The files and the descriptions that may be meant, the likeliest first.
+
+    ``named``: they were asked for, and all of them count. ``rivals`` are as likely as the first,
+    ``alike`` are other files of it, ``broken`` are unreadable, with the reason."""
 
     found: Found
     robots: Sequence[Looked]
@@ -93,7 +94,7 @@ def see(wanted: Wanted) -> Seen:
     wanted.tell(f"looking for robots in {', '.join(wanted.paths)}")
     found = search(wanted.paths, wanted.launch or ())
     try:
-        return _seen(wanted, found)
+        return _looked_at(wanted, found)
     except UsageError as error:
         if not found.named or isinstance(error, Undecided):
             raise
@@ -113,7 +114,7 @@ def see(wanted: Wanted) -> Seen:
         raise UsageError(f"{error}; so nothing of {file} is in a fleet: {listed}") from None
 
 
-def _seen(wanted: Wanted, found: Found) -> Seen:
+def _looked_at(wanted: Wanted, found: Found) -> Seen:
     reach = Reach(trust=wanted.trust)
     values = NeededValues(found.read, found.launch)
     look_at = partial(look, given=wanted.arguments, reach=reach, values=values)
@@ -128,7 +129,7 @@ def _seen(wanted: Wanted, found: Found) -> Seen:
     if {*found.descriptions} & {*map(os.path.normpath, wanted.paths)}:
         # The descriptions that were named; beside one alone stand those that share its folder.
         named = look_at_all(found.descriptions)
-        _refuse([it for it in named if not it.links], "")
+        _refuse_robots([it for it in named if not it.links], "")
         if len(named) > 1:
             return Seen(found, named, True)
         beside = [look_at(it) for it in _partners(named[0], found)]
@@ -165,12 +166,12 @@ def _likeliest(
     usable = [*filter(_is_robot, looked)]
     if not usable:
         others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
-        _refuse(_by_launches(looked, found), _other_one(rest[0], found) if rest else others)
+        _refuse_robots(_by_launches(looked, found), _other_one(rest[0], found) if rest else others)
         where = ", ".join(found.folders or map(os.path.normpath, wanted.paths))
         raise UsageError(f"{where}: no description of a robot is there; give a URDF, xacro or SDF")
     best = chosen(usable, found)
     likeliest = best.order[0]
-    _refuse(_rather(likeliest, looked, found), _other_one(likeliest.robot.path, found))
+    _refuse_robots(_as_likely(likeliest, looked, found), _other_one(likeliest.robot.path, found))
     # The name of a model tells what it carries: x500_lidar.
     if likeliest.part and not likeliest.moving and likeliest.robot.tag == "robot":
         said = {likeliest.robot.path: "it is called as a part, and nothing in it moves"}
@@ -197,17 +198,15 @@ def _partners(it: Looked, found: Found) -> list[str]:
 
 
 def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looked:
-    """Return the URDF of a robot for robot_state_publisher, which takes no SDF, with its SDF for
-    the simulator, if both exist."""
+    """Return the URDF of a robot with its SDF for the simulator, if both exist."""
     other = partner(it, others) if wanted.simulator != REAL else None
     if other is None or (it.tag == "robot" and it.simulator != NO_SIMULATOR):
         return it
     return with_model(other, it) if it.tag == "sdf" else with_model(it, other)
 
 
-def _rather(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> list[Looked]:
-    """Return the unreadable descriptions that are as likely to be the robot: their launch file
-    starts as much. All of them if the likeliest one cannot move."""
+def _as_likely(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> list[Looked]:
+    """Return unreadable descriptions that are as likely; all if the likeliest cannot move."""
     broken = _by_launches([it for it in looked if it.fault], found)
     if not likeliest.moving:
         return broken
@@ -226,7 +225,7 @@ def _other_one(path: str, found: Found) -> str:
     return f"; {why}for another one: multibot init {shlex.join([path, *found.words])}"
 
 
-def _refuse(which: Sequence[Looked], more: str) -> None:
+def _refuse_robots(which: Sequence[Looked], more: str) -> None:
     for it in which[:1]:
         why = f"it has no link; {robot_instead(it.path)}"
         if it.links:
@@ -236,8 +235,7 @@ def _refuse(which: Sequence[Looked], more: str) -> None:
 
 
 def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> list[Looked]:
-    """Return the robots with the launch file that starts each, and the xacro arguments that give
-    each its own names and make it simulated or real: as it was asked for, or as the files are."""
+    """Return the robots with their launch files and xacro arguments, simulated or real."""
     tree = builtin_tree((), wanted.release)
     reach = Reach(trust=wanted.trust)
     launched = (

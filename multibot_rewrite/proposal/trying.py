@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A proposal tried: does it build, with which files and in which layout? Nothing is written."""
+"""Tries whether a proposal builds, with which files and in which layout; writes nothing."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ MOST_ROUNDS, MOST_TRIED = 10, 5
 
 
 def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
-    """Return the fleet of the likeliest description with which one builds; otherwise of the first.
-    Raises Undecided if another one that builds may be meant as well."""
+    """Return the fleet of the likeliest description that builds, or of the first."""
+    # Raises Undecided if another one that builds may be meant as well.
     likely = [seen.robots[0], *seen.rivals]
     if len(likely) > MOST_TRIED:
         _refuse_to_choose(likely, seen.found)
@@ -54,8 +54,7 @@ def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
 
 
 def as_named(seen: Seen, wanted: Wanted) -> Proposal:
-    """Return the fleet of the descriptions that were named; without the other file of the same
-    robot if it does not build with it."""
+    """Return the fleet of the named descriptions, or of their other file if only that builds."""
     made = that_builds(seen.robots, seen.found, wanted)
     if not made.notes or list(seen.alike) in ([], list(seen.robots)):
         return made
@@ -71,9 +70,8 @@ def _refuse_to_choose(likely: Sequence[Looked], found: Found) -> None:
 def that_builds(
     robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str] | None = None
 ) -> Proposal:
-    """Return the fleet of these robots without the files that do not go with them (``refused`` are
-    left out, too), in its own layout or the first that builds. Arguments that name robots stay
-    empty if it builds only so."""
+    """Return the fleet of these robots without ``refused`` files, in a layout that builds."""
+    # Arguments that name robots stay empty if it builds only so.
     wanted.tell(f"does a fleet of {', '.join(it.path for it in robots)} build?")
     own = with_arguments(robots, wanted, found)
     made, errors = _without_blamed(own, found, wanted, refused or {})
@@ -87,7 +85,7 @@ def that_builds(
             lost = any(it.bringup for it in made.members) and not all(
                 it.bringup for it in other.members
             )
-            if not lost and not errors_of(_written(other, wanted), wanted.trust):
+            if not lost and not errors_of(_fleet_text(other, wanted), wanted.trust):
                 why = f"{what}, since it does not build as it is: {errors[0][1]}"
                 simulator = Choice(other.keys["simulator"].value, why)
                 return other._replace(keys={**other.keys, "simulator": simulator}, chosen=why)
@@ -97,9 +95,8 @@ def that_builds(
 def _in_another_world(
     made: Proposal, own: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
 ) -> Iterator[tuple[Proposal, str]]:
-    """Yield the proposal with the robots real that no simulator can run or that have nothing for one,
-    and with the argument that loads a simulator's hardware, each with what it is. A simulator that was
-    asked for stays."""
+    """Yield the proposal with robots real, or hardware loaded, each with what it is."""
+    # Real are those that no simulator can run; a simulator that was asked for stays.
     if wanted.simulator or made.keys["simulator"].value == REAL:
         return
     real = [not _can_be_simulated(it.looked) for it in made.members]
@@ -132,20 +129,20 @@ def _without_blamed(
     out = dict(refused)
     for _ in range(MOST_ROUNDS):
         made = propose(own, found, wanted, out)
-        errors = errors_of(_written(made, wanted), wanted.trust)
-        blamed = dict(_blamed(made, errors))
+        errors = errors_of(_fleet_text(made, wanted), wanted.trust)
+        blamed = dict(_faulty_files(made, errors))
         if not blamed:
             break
         out |= blamed
     return made, errors
 
 
-def _written(it: Proposal, wanted: Wanted) -> FleetText:
+def _fleet_text(it: Proposal, wanted: Wanted) -> FleetText:
     """Return the fleet file as it will be written."""
     return FleetText(wanted.file, text_of(it, wanted.file))
 
 
-def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
+def _faulty_files(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
     """Yield the related files that have one of the errors, with it."""
     paths = (path for member in it.members for path in member.related_files.paths)
     files = {os.path.abspath(path): path for path in paths}
@@ -159,11 +156,10 @@ def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[s
 def errors_of(
     source: FleetSource, trust: bool = False, of_sources: bool = False
 ) -> list[tuple[str, str]]:
-    """Return why a fleet does not build: the file, if one is at fault, and a line each. What else is
-    right is read back, as a build does: what that finds of the sources (``of_sources``) is in any
-    layout."""
+    """Return why a fleet does not build, each with its file or empty."""
+    # It is read back as a build does; faults ``of_sources`` are in any layout.
     try:
-        plan, found, back = once_kept((source, trust), lambda: _built(source, trust))
+        plan, found, back = once_kept((source, trust), lambda: _build_results(source, trust))
     except MultibotError as error:
         place = (source.path,) if isinstance(source, FleetText) else ()
         return [("", without_place(str(error), *place))]
@@ -178,8 +174,10 @@ def errors_of(
     return lines
 
 
-def _built(source: FleetSource, trust: bool) -> tuple[FleetPlan, Set[Finding], Set[Finding]]:
-    """Return a fleet as a build has it: what is found in it, and what is found when it is read back."""
+def _build_results(
+    source: FleetSource, trust: bool
+) -> tuple[FleetPlan, Set[Finding], Set[Finding]]:
+    """Return a plan, its findings as in a build, and those of reading it back."""
     folder = os.path.abspath("out")
     plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
     made = make_outputs(plan, folder)
@@ -192,15 +190,14 @@ def _built(source: FleetSource, trust: bool) -> tuple[FleetPlan, Set[Finding], S
 def in_a_layout_that_builds(
     it: Proposal, own: Sequence[tuple[str, str]], wanted: Wanted
 ) -> Proposal:
-    """Return the proposal in its own layout if that has no errors (``own``), or in the first that
-    builds. If none does it is unchanged, and its first errors are notes."""
+    """Return the proposal in the first layout that builds; with notes if none does."""
     first = it.keys["layout"].value
     if not own:
         return it
     for layout in (one.name for one in LAYOUTS if one.name != first):
         why = f"layout {first} does not work for these files: {own[0][1]}"
         other = in_layout(it, Choice(layout, why))
-        if not errors_of(_written(other, wanted), wanted.trust):
+        if not errors_of(_fleet_text(other, wanted), wanted.trust):
             return other
     return _with_notes(it, own)
 
@@ -209,7 +206,7 @@ def with_faults_of_sources(it: Proposal, wanted: Wanted) -> Proposal:
     """Return the chosen proposal; faults that no choice mends are notes as well."""
     if it.notes:
         return it
-    return _with_notes(it, errors_of(_written(it, wanted), wanted.trust, True))
+    return _with_notes(it, errors_of(_fleet_text(it, wanted), wanted.trust, True))
 
 
 def _with_notes(it: Proposal, errors: Sequence[tuple[str, str]]) -> Proposal:

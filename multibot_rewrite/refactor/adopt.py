@@ -73,13 +73,14 @@ _ALONE = "wherever the prefix is put, it changes more than names"
 
 
 class Adopted(NamedTuple):
-    """A package with its new argument. ``before`` and ``after`` are the bytes of the files that change,
-    by path, empty for a new one; ``verified`` are the descriptions that take it, ``left`` is what could
-    not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
-    those that have such an argument, with its name: they stay. ``launches`` are the launch files that
-    are verified to hand it on, ``configurations`` those that were verified besides the default one, as
-    ``robot.urdf.xacro gripper:=true``. ``namespace`` is the argument for a namespace, empty where
-    nothing needs one, ``spaced`` the descriptions that take it."""
+    """A package with its new argument; ``before`` and ``after`` are bytes by path, empty if new.
+
+    ``verified`` descriptions take it, ``left`` could not be changed, ``unread`` could not be
+    read, with the reason. ``already`` have such an argument, with its name: they stay.
+    ``launches`` are launch files that are verified to hand it on, ``configurations`` those that
+    were verified besides the default one, as ``robot.urdf.xacro gripper:=true``. ``namespace``
+    is the argument for a namespace, empty if not needed, ``spaced`` are the descriptions that
+    take it."""
 
     argument: str
     before: Mapping[str, bytes]
@@ -103,23 +104,24 @@ def adopt(
     trust: bool = False,
     distro: str = "",
 ) -> Adopted:
-    """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
-    becomes a xacro. Writes nothing. Raises InputError where there is no description that can be
-    expanded, or wherever the prefix is put, it changes more than names."""
+    """Give every description of ``folder`` an argument for a prefix, in its xacro sources.
+
+    A plain URDF becomes a xacro. Writes nothing. Raises InputError where there is no description
+    that can be expanded, or wherever the prefix is put, it changes more than names."""
     tree = builtin_tree(tuple(definitions), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
     job = _Job(folder, package, tree, how, dict(package.unread))
     arguments = {it.path: _arguments(it, job) for it in package.descriptions}
-    already = {path: name for path, its in arguments.items() if (name := _prefix_of(its))}
+    already = {path: name for path, its in arguments.items() if (name := _prefix_argument(its))}
     found = list(_as_xacros((it for it in package.descriptions if it.path not in already), job))
     if not found and not already:
         nothing = f"{folder}: there is no description of a robot in it"
         raise InputError(next(iter(job.unread.values()), nothing))
     if not found:
         return Adopted("", {}, {}, (), (), job.unread, already)
-    own = {path: _space_of(its) for path, its in arguments.items()}
-    found = list(_configured(found, job))
+    own = {path: _namespace_argument(its) for path, its in arguments.items()}
+    found = list(_in_configurations(found, job))
     made = _with_related_files(_with_namespace(found, own, job), found, job)
     return made._replace(unread=job.unread, already=already)
 
@@ -158,7 +160,7 @@ def _with_related_files(made: Adopted, found: Sequence[Description], job: _Job) 
     )
 
 
-def _configured(found: Sequence[Description], job: _Job) -> Iterator[Description]:
+def _in_configurations(found: Sequence[Description], job: _Job) -> Iterator[Description]:
     """Yield each description with its other configurations; SRDFs after the URDFs they are for."""
     urdfs: list[Inventory] = []
     for it in sorted(found, key=_is_srdf):
@@ -174,15 +176,15 @@ def _with_argument(
     how: Expanding,
     more: Collection[SourceEdit] = (),
 ) -> tuple[Adopted, Mapping[str, bytes]]:
-    """Return the descriptions with the argument, verified together with ``more`` edits; and the
-    files that change, by their real paths."""
+    """Return the descriptions with the argument, and the changed files by real path."""
+    # They are verified together with ``more`` edits.
     word = b"${%s}" % argument.encode()
-    asked = [list(_changes(it)) for it in found]
+    asked = [list(_prefix_edits(it)) for it in found]
     made = placed(found, asked, lambda _: word)
     edits = {*made.edits, *declared(found, texts, {it.file for it in made.edits}, argument), *more}
     after = edited(texts, edits)
     every = zip(found, made.changes, strict=True)
-    wrong = {at: _fault(it, its, after, argument, how) for at, (it, its) in enumerate(every)}
+    wrong = {at: _prefix_fault(it, its, after, argument, how) for at, (it, its) in enumerate(every)}
     wrong = {at: why for at, why in wrong.items() if why}
     lacking = {at for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
     # Proved is a description none of whose configurations is wrong or lacks a prefix.
@@ -194,7 +196,7 @@ def _with_argument(
     verified = tuple(path for path in paths if path not in unmade)
     left = (
         *made.left,
-        *chain.from_iterable(map(_not_written, found)),
+        *chain.from_iterable(map(_unwritten_defaults, found)),
         *(Left(found[at].words, f"its names are not verified: {it}") for at, it in wrong.items()),
     )
     named = as_named(after, found)
@@ -205,8 +207,8 @@ def _with_argument(
 
 
 def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _Job) -> Adopted:
-    """Return the result with an argument for a namespace, if one changes names alone; ``own`` are
-    arguments that descriptions have for that already, by their paths."""
+    """Return the result with an argument for a namespace, if one changes names alone."""
+    # ``own`` are such arguments that descriptions have already, by path.
     texts, prefix = texts_of(found), free_name(found)
     has = {it.path: own.get(it.path, "") for it in found}
     space = namespaced([] if any(has.values()) else found, texts, job.tree)
@@ -244,16 +246,16 @@ def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
     return found.arguments
 
 
-def _space_of(arguments: Iterable[Argument]) -> str:
+def _namespace_argument(arguments: Iterable[Argument]) -> str:
     """Return the argument that is a namespace of plugins, or in one; empty if there is none."""
     return next(
         (it.name for it in arguments if any(one.kind == "namespace" for one in it.uses)), ""
     )
 
 
-def _prefix_of(arguments: Iterable[Argument]) -> str:
-    """Return the argument that is before links, other for each robot; empty if there is none.
-    ``world`` and some that were forgotten may lack it."""
+def _prefix_argument(arguments: Iterable[Argument]) -> str:
+    """Return the argument that is before links and differs by robot; empty if there is none."""
+    # ``world`` and some that were forgotten may lack it.
     for it in arguments:
         links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
         if it.value and any(2 * use.names >= use.total for use in links):
@@ -287,9 +289,9 @@ def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:
     return Description(path, inventory_of(data, path, tree), read)
 
 
-def _changes(it: Description) -> Iterator[ValueEdit]:
-    """Return where the prefix goes in the values of a description. A link or joint that it does not
-    have is one of another description that includes the same file."""
+def _prefix_edits(it: Description) -> Iterator[ValueEdit]:
+    """Yield where the prefix goes in the values of a description."""
+    # A link or joint that it does not have is one of another description with the same file.
     document, claims, _, declared, *_ = it.inventory
     naming = prefixing()
     renames = make_renames(it.inventory, naming)
@@ -308,9 +310,8 @@ def _changes(it: Description) -> Iterator[ValueEdit]:
             yield change_of(document, claim, 0, 0, TRIED)
 
 
-def _not_written(it: Description) -> Iterator[Left]:
-    """Yield what a plugin takes by default, such as the name of its sensor: to stay, or to have the
-    prefix, it needs an element of its own."""
+def _unwritten_defaults(it: Description) -> Iterator[Left]:
+    """Yield defaults of plugins, such as a sensor's name, that need an element of their own."""
     document, _, _, declared, *_ = it.inventory
     for one in insertions(it.inventory.served, declared, prefixing()):
         if it.read:
@@ -319,15 +320,15 @@ def _not_written(it: Description) -> Iterator[Left]:
             yield Left(where, what)
 
 
-def _fault(
+def _prefix_fault(
     it: Description,
     changes: Collection[ValueEdit],
     after: Mapping[str, bytes],
     argument: str,
     how: Expanding,
 ) -> str:
-    """Return what is wrong with a description with a prefix: only the names may change. Raises
-    InputError for one that differs without a prefix."""
+    """Return what is wrong with a description with a prefix: only the names may change."""
+    # Raises InputError for one that differs without a prefix.
     document = it.inventory.document
     for prefix, wanted in (("", document.source), (TRIED, expected(document, changes))):
         more = {argument: prefix} if prefix else {}

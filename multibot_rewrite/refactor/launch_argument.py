@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A launch file passes new xacro arguments on: declared, with an empty default, and given to
-``xacro``. What belongs to the robot's description runs in the namespace.
+"""Edits launch files to give new arguments to ``xacro`` and to start nodes in the namespace.
 
-Edited is what people write: ``Command(["xacro ", path])`` in a launch file in Python with a literal
-list of its actions, and ``$(command 'xacro ...')`` in XML. What else runs xacro is left for its author.
-Sources: ros2/launch launch/substitutions/command.py, launch_xml; ros2/xacro README."""
+Edited is what people write: ``Command(["xacro ", path])`` in a launch file in Python with a
+literal list of its actions, and ``$(command 'xacro ...')`` in XML. What else runs xacro is left
+for its author. Sources: ros2/launch launch/substitutions/command.py, launch_xml; ros2/xacro
+README."""
 
 import ast
 import os
@@ -49,8 +49,10 @@ class Space(NamedTuple):
 
 
 class LaunchEdit(NamedTuple):
-    """A launch file with the argument; ``data`` is None where it is not changed, ``left`` says why.
-    ``filled`` are the parameter files that it fills in now, ``spaced``: a namespace is set."""
+    """A launch file with the argument; ``data`` is None if unchanged, ``left`` says why.
+
+    ``filled`` are the parameter files that it fills in; ``spaced`` is true if it sets a
+    namespace."""
 
     data: bytes | None
     left: tuple[Left, ...]
@@ -66,9 +68,10 @@ def with_argument(
     parameters: Collection[str] = (),
     space: Space | None = None,
 ) -> LaunchEdit:
-    """Return the launch file with an argument for the descriptions (names of files) that it
-    expands; it fills in those of ``parameters`` (names of files) that it only gives to nodes, and
-    puts what belongs to the description into the namespace ``space``."""
+    """Return the launch file with an argument for the ``descriptions`` that it expands.
+
+    It fills in those ``parameters`` that it only gives to nodes, and puts what belongs to the
+    description into the namespace ``space``. All are names of files."""
     if not any(name.encode() in source for name in descriptions):
         return LaunchEdit(None, ())
     if space and not space.of_xacro and not any(it.encode() in source for it in OF_ROBOT):
@@ -79,24 +82,24 @@ def with_argument(
         place = f"{path}:{locate(source, own.start())[0]}"
         left = Left(place, "it has a namespace; give that to its xacro by hand")
         return made._replace(left=(*made.left, left)) if made.data else made
-    change = _of_xml if path.endswith(".xml") else _of_python
+    change = _xml_edit if path.endswith(".xml") else _python_edit
     return change(path, source, argument, parameters, space)
 
 
-def _both(argument: str, space: Space | None) -> tuple[list[str], list[str]]:
+def _declared_and_given(argument: str, space: Space | None) -> tuple[list[str], list[str]]:
     """Return the arguments to declare, and those that xacro gets."""
     every = [argument, space.name] if space else [argument]
     return every, every if space and space.of_xacro else [argument]
 
 
-def _of_xml(
+def _xml_edit(
     path: str, source: bytes, argument: str, parameters: Collection[str], space: Space | None
 ) -> LaunchEdit:
-    every, of_xacro = _both(argument, space)
+    every, of_xacro = _declared_and_given(argument, space)
     commands = list(_COMMAND.finditer(source))
     root = _ROOT.search(source)
     if not commands or not root or b'<arg name="%s"' % argument.encode() in source:
-        return LaunchEdit(None, (_by_hand(path, source),))
+        return LaunchEdit(None, (_left_to_author(path, source),))
     given = "".join(f" {it}:=$(var {it})" for it in of_xacro).encode()
     edits = [SourceEdit(path, it.start(2), it.start(2), given) for it in commands]
     declared = "".join(f'\n  <arg name="{it}" default=""/>' for it in every).encode()
@@ -133,7 +136,7 @@ class _Text(NamedTuple):
         return SourceEdit(self.path, at, at, text.encode())
 
 
-def _of_python(
+def _python_edit(
     path: str, source: bytes, argument: str, parameters: Collection[str], space: Space | None
 ) -> LaunchEdit:
     try:
@@ -142,13 +145,13 @@ def _of_python(
         return LaunchEdit(None, (Left(path, "it is no Python"),))
     lines = list(accumulate(map(len, source.splitlines(keepends=True)), initial=0))
     it = _Text(path, source, tree, lines)
-    every, of_xacro = _both(argument, space)
+    every, of_xacro = _declared_and_given(argument, space)
     # ``["xacro ", ...]`` or ``[FindExecutable(name="xacro"), " ", ...]``.
     called = (it for it in _lists_of(tree, "Command") if it.elts)
     commands = [it for it in called if _XACRO.search(ast.unparse(it.elts[0]))]
     actions = next(_lists_of(tree, "LaunchDescription"), None)
     if not commands or actions is None or not actions.elts:
-        return LaunchEdit(None, (_by_hand(path, source),))
+        return LaunchEdit(None, (_left_to_author(path, source),))
     given = "".join(f', " {name}:=", LaunchConfiguration("{name}")' for name in of_xacro)
     edits = [it.insert(it.end(words.elts[-1]), given) for words in commands]
     # Each argument is declared before the first action, as far from the next as that is.
@@ -156,20 +159,20 @@ def _of_python(
     gap = source[it.begin(actions) + 1 : first].decode() or " "
     new = (f'DeclareLaunchArgument("{name}", default_value=""),{gap}' for name in every)
     edits.append(it.insert(first, "".join(new)))
-    edits += _spaced(it, space.name) if space else ()
+    edits += _namespace_edits(it, space.name) if space else ()
     files = {name: found for name in parameters if (found := list(_parameter_items(tree, name)))}
     for one in chain.from_iterable(files.values()):
         edits.append(it.insert(it.begin(one), "ParameterFile("))
         edits.append(it.insert(it.end(one), ", allow_substs=True)"))
-    edits += _imports(it, [name for name in _IMPORTS if files or name != "ParameterFile"])
+    edits += _import_edits(it, [name for name in _IMPORTS if files or name != "ParameterFile"])
     data = edited({path: source}, edits)[path]
     return LaunchEdit(data, (), tuple(files), space is not None)
 
 
-def _spaced(it: _Text, space: str) -> Iterator[SourceEdit]:
+def _namespace_edits(it: _Text, space: str) -> Iterator[SourceEdit]:
     """Yield a namespace for each node that belongs to the description, after its package."""
     for node in ast.walk(it.tree):
-        if not isinstance(node, ast.Call) or _called(node) != "Node":
+        if not isinstance(node, ast.Call) or _called_name(node) != "Node":
             continue
         package = next((one for one in node.keywords if one.arg == "package"), None)
         if package is None or not isinstance(package.value, ast.Constant):
@@ -220,7 +223,7 @@ def _names_file(node: ast.AST, file: str) -> bool:
     return os.path.basename(node.value) == file
 
 
-def _imports(it: _Text, used: Iterable[str]) -> Iterator[SourceEdit]:
+def _import_edits(it: _Text, used: Iterable[str]) -> Iterator[SourceEdit]:
     """Yield imports of what the argument needs, after the existing ones."""
     froms = [one for one in ast.walk(it.tree) if isinstance(one, ast.ImportFrom)]
     known = {name.asname or name.name for one in froms for name in one.names}
@@ -236,16 +239,16 @@ def _lists_of(tree: ast.Module, called: str) -> Iterator[ast.List]:
         if not isinstance(node, ast.Call) or not node.args:
             continue
         first = node.args[0]
-        if _called(node) == called and isinstance(first, ast.List):
+        if _called_name(node) == called and isinstance(first, ast.List):
             yield first
 
 
-def _called(node: ast.Call) -> str:
-    """Return the last word of what is called."""
+def _called_name(node: ast.Call) -> str:
+    """Return the last name of what is called."""
     named = node.func.attr if isinstance(node.func, ast.Attribute) else node.func
     return named if isinstance(named, str) else getattr(named, "id", "")
 
 
-def _by_hand(path: str, source: bytes) -> Left:
+def _left_to_author(path: str, source: bytes) -> Left:
     line = locate(source, max(source.find(b"xacro"), 0))[0]
     return Left(f"{path}:{line}", "give its xacro the argument by hand")

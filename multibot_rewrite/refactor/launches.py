@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The launch files of a package with a new argument of its xacros, and the proof that they hand it on.
+"""Launch files with a new argument of their xacros, verified to hand it on.
 
 A launch file is read in a copy of the package, with the changed files in it: with the argument every
 link of the description that it gives its nodes has the prefix. A parameter file that it fills in gets
@@ -45,8 +45,7 @@ class Launches(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """How a launch file is tried: the argument and a value of it, whether the file may do anything,
-    the parameter files that it may fill in, by their names, and its namespace."""
+    """How a launch file is tried: argument and value, trust, parameter files, namespace."""
 
     argument: str
     prefix: str
@@ -65,9 +64,9 @@ class _Verdict(NamedTuple):
 def with_launches(
     folder: str, launches: Collection[str], after: Mapping[str, bytes], how: Trial
 ) -> Launches:
-    """Return the launch files that expand a description of ``after``, files by their paths. One
-    that does not hand the argument on is left unchanged. Parameter files are filled in if no other
-    file names them and they are verified with their launch file; so is a namespace given."""
+    """Return the launch files that expand a description of ``after``, with the argument."""
+    # One that does not hand the argument on is unchanged. Parameter files are filled in if no other
+    # file names them and they are verified with their launch file; so is a namespace.
     texts = {path: read_file(path) for path in launches}
     alone = {
         name: it
@@ -75,7 +74,7 @@ def with_launches(
         if sum(name.encode() in text for text in (*texts.values(), *after.values())) == 1
     }
     how = how._replace(parameters=alone)
-    made = [_tried(folder, path, text, after, how) for path, text in texts.items()]
+    made = [_tried_launch(folder, path, text, after, how) for path, text in texts.items()]
     return Launches(
         {path: data for it in made for path, data in it.after.items()},
         tuple(path for it in made for path in it.verified),
@@ -83,20 +82,22 @@ def with_launches(
     )
 
 
-def _tried(folder: str, path: str, text: bytes, after: Mapping[str, bytes], how: Trial) -> Launches:
+def _tried_launch(
+    folder: str, path: str, text: bytes, after: Mapping[str, bytes], how: Trial
+) -> Launches:
     """Return a launch file with all that is asked for, or with less of it, as far as verified."""
     names = {os.path.basename(it) for it in after}
     plain = how._replace(parameters={})
     one = Launches({}, (), ())
     for it in (how, plain, plain._replace(space=None)):
         made = with_argument(path, text, it.argument, names, it.parameters, it.space)
-        one = _one(folder, path, made, after, it if made.spaced else it._replace(space=None))
+        one = _verified(folder, path, made, after, it if made.spaced else it._replace(space=None))
         if path in one.after or not (made.filled or made.spaced):
             break
     return one
 
 
-def _one(
+def _verified(
     folder: str, path: str, made: LaunchEdit, after: Mapping[str, bytes], how: Trial
 ) -> Launches:
     """Return one launch file with what it fills in, as far as it is verified."""
@@ -110,7 +111,7 @@ def _one(
     # It is read in a copy of the package.
     with TemporaryDirectory(prefix="multibot_") as above:
         root = os.path.join(above, os.path.basename(home))
-        _copy(home, root, files)
+        _link_copy(home, root, files)
         copy = os.path.join(root, os.path.relpath(os.path.realpath(path), os.path.realpath(home)))
         found = _verdict(LaunchOrder(copy, (), (above, home), how.trust), how, filled)
         it = _Verdict(*(words.replace(f"{root}/", "") for words in found))
@@ -125,7 +126,7 @@ def _one(
     return Launches(changed, (path,), made.left)
 
 
-def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
+def _link_copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
     """Make a folder with links to all its files, except those that are changed."""
     for at, folders, names in os.walk(home):
         folders[:] = [it for it in folders if it != ".git"]
@@ -142,6 +143,7 @@ def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
 
 
 def _verdict(order: LaunchOrder, how: Trial, filled: "Sequence[Filled]") -> _Verdict:
+    """Return what is wrong with a launch file that was tried with the argument."""
     argument, prefix = how.argument, how.prefix
     try:
         graph = launch_graph(order)
@@ -157,7 +159,7 @@ def _verdict(order: LaunchOrder, how: Trial, filled: "Sequence[Filled]") -> _Ver
     except InputError as error:
         return _Verdict(str(error), "")
     for it in filled:
-        if not (_gets(graph, it.path, it.before) and _gets(other, it.path, it.tried)):
+        if not (_gets_file(graph, it.path, it.before) and _gets_file(other, it.path, it.tried)):
             return _Verdict(f"{os.path.basename(it.path)} is changed, or lacks it", "")
     if given == [it if it == WORLD else f"{prefix}{it}" for it in plain]:
         return _Verdict(spaced, "")
@@ -179,8 +181,8 @@ def _space_fault(order: LaunchOrder, graph: LaunchGraph, space: Space | None) ->
     return "" if is_given or not space.of_xacro else f"its description lacks {TRIED_SPACE}"
 
 
-def _gets(graph: LaunchGraph, path: str, wanted: bytes) -> bool:
-    """Return whether some node gets a parameter file with what is ``wanted``, and none another."""
+def _gets_file(graph: LaunchGraph, path: str, wanted: bytes) -> bool:
+    """Return whether nodes get a parameter file as ``wanted``, and no node another version."""
     name = os.path.basename(path)
     given = [it for node in graph.nodes for it in node.parameters]
     texts = [it.text for it in given if name == os.path.basename(it.source or it.file)]
@@ -225,8 +227,8 @@ class Filled(NamedTuple):
 def fillable(
     paths: Sequence[str], urdfs: Sequence[bytes], names: Collection[str], argument: str, tried: str
 ) -> Mapping[str, Filled]:
-    """Return the parameter files that have some of the names of the descriptions ``urdfs``, by
-    their own names; files of one name are left out."""
+    """Return the parameter files with names of the descriptions ``urdfs``, by their own names."""
+    # Files of one name are left out.
     own = [os.path.basename(it) for it in paths]
     found: dict[str, Filled] = {}
     for path in paths:

@@ -56,8 +56,8 @@ def named_elsewhere(
 
 
 def root_sections(paths: Collection[str]) -> Iterator[Left]:
-    """Yield sections of parameter files whose nodes are in no namespace, of nodes that get it: the
-    robot's own and its controllers. Source: rcl_yaml_param_parser."""
+    """Yield parameter sections outside namespaces, of nodes that get one."""
+    # The robot's own and its controllers. Source: rcl_yaml_param_parser.
     texts = {path: read_file(path) for path in paths}
     own = {*OF_ROBOT, *chain.from_iterable(map(_controllers, texts.values()))}
     for path, data in texts.items():

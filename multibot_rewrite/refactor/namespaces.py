@@ -44,8 +44,7 @@ class Spaced(NamedTuple):
 
 
 class Namespaced(NamedTuple):
-    """The argument, empty where there is nothing to change, the edits of the sources with those that
-    declare it, the descriptions, and what is left."""
+    """The argument, empty without changes; edits that add it, descriptions, and what is left."""
 
     argument: str
     edits: tuple[SourceEdit, ...]
@@ -69,20 +68,20 @@ def spacing() -> Naming:
 
 def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: Tree) -> Namespaced:
     """Return the edits of the sources ``texts``, by their real paths."""
-    every, left = _every(found, tree)
+    every, left = _spaced_urdfs(found, tree)
     argument = free_name(found, SPACES)
     made = placed(
         [it.found for it in every],
-        [list(_changes(it.template)) for it in every],
-        lambda change: _written(change, argument),
+        [list(_namespace_edits(it.template)) for it in every],
+        lambda change: _conditional_namespace(change, argument),
     )
     edits, left = list(made.edits), [*left, *made.left]
-    for (file, start), wanted in _added(every).items():
+    for (file, start), wanted in _added_by_spot(every).items():
         if len(wanted) > 1:
             where = place(file, texts[file], start)
             left.append(Left(where, "its copies need different ROS names; write them out"))
         else:
-            edits += _edits(file, texts[file], start, next(iter(wanted)), argument)
+            edits += _element_edits(file, texts[file], start, next(iter(wanted)), argument)
     if not edits:
         return Namespaced("", (), (), tuple(left))
     own = [it.found for it in every]
@@ -90,7 +89,7 @@ def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: T
     return Namespaced(argument, tuple(edits), tuple(every), tuple(left))
 
 
-def _every(found: Iterable[Description], tree: Tree) -> tuple[list[Spaced], list[Left]]:
+def _spaced_urdfs(found: Iterable[Description], tree: Tree) -> tuple[list[Spaced], list[Left]]:
     """Return each URDF for the rewrite, and those that it refuses."""
     every: list[Spaced] = []
     left: list[Left] = []
@@ -117,24 +116,26 @@ def space_verified(
     how: Expanding,
     tree: Tree,
 ) -> tuple[tuple[str, ...], tuple[Left, ...]]:
-    """Return the paths of descriptions that become with a namespace what a rewrite makes of them,
-    also with a ``prefix``, which is ``tried`` with the default arguments; and what is wrong with
-    others."""
+    """Return the paths of verified descriptions, and what is wrong with the others."""
+    # With a namespace they are what a rewrite makes of them, also with a ``prefix``, which is
+    # ``tried`` with the default arguments.
     wrong: dict[str, Left] = {}
     for it in space.every:
-        why = _fault(it, after, {}, space.argument, how)
+        why = _namespace_fault(it, after, {}, space.argument, how)
         if not why and not it.found.arguments:
             given = {prefix: tried}
             beside = Expanding(how.reach, {**how.arguments, **given})
             data, _ = read_text(it.found.path, beside, after)
-            why = _fault(_with_namespace(it.found, data, tree), after, given, space.argument, how)
+            why = _namespace_fault(
+                _with_namespace(it.found, data, tree), after, given, space.argument, how
+            )
         if why:
             wrong[it.found.path] = Left(it.found.words, f"its ROS names are not verified: {why}")
     paths = dict.fromkeys(it.found.path for it in space.every)
     return tuple(it for it in paths if it not in wrong), tuple(wrong.values())
 
 
-def _fault(
+def _namespace_fault(
     it: Spaced, after: Mapping[str, bytes], given: Mapping[str, str], argument: str, how: Expanding
 ) -> str:
     """Return what is wrong with a description with a namespace."""
@@ -169,7 +170,7 @@ def _readable_elements(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str
     ]
 
 
-def _changes(template: Template) -> Iterator[ValueEdit]:
+def _namespace_edits(template: Template) -> Iterator[ValueEdit]:
     """Return where the namespace goes in existing values."""
     document, claims, *_ = template.inventory
     for claim, spelling in zip(claims, template.plan.renames.values, strict=True):
@@ -177,7 +178,7 @@ def _changes(template: Template) -> Iterator[ValueEdit]:
             yield change_of(document, claim, at, at, f"{before}{TRIED_SPACE}{after}")
 
 
-def _written(change: ValueEdit, argument: str) -> bytes:
+def _conditional_namespace(change: ValueEdit, argument: str) -> bytes:
     """Return an expression that is empty without a namespace."""
     before, after = change.new.split(TRIED_SPACE)
     words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)
@@ -185,13 +186,13 @@ def _written(change: ValueEdit, argument: str) -> bytes:
     return f"${{{test}{' + '.join(words)}}}".encode()
 
 
-def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
+def _added_by_spot(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
     """Return what is added where an element is written, for each element that it makes."""
     found: dict[Spot, set[_Added]] = defaultdict(set)
     for it in every:
         read, document = it.found.read, it.template.inventory.document
         assert read is not None
-        needs = _needs(it.template)
+        needs = _added_by_element(it.template)
         for number, element in enumerate(document.elements):
             if origin := read.origins.of(number):
                 spot = os.path.realpath(origin.file), origin.start
@@ -199,7 +200,7 @@ def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
     return {spot: added for spot, added in found.items() if added != {_Added()}}
 
 
-def _needs(template: Template) -> dict[etree._Element, _Added]:
+def _added_by_element(template: Template) -> dict[etree._Element, _Added]:
     """Return what is added to which element."""
     items = template.plan.insertions
     groups = lists_by_key((it.parent, it) for it in items if it.filled is None)
@@ -212,10 +213,10 @@ def _needs(template: Template) -> dict[etree._Element, _Added]:
     return made | {it: _Added((), text) for it, text in texts.items()}
 
 
-def _edits(
+def _element_edits(
     file: str, source: bytes, start: int, added: _Added, argument: str
 ) -> Iterator[SourceEdit]:
-    """Yield the edits with what the condition guards; xacro writes ``<a/>`` where nothing is in it."""
+    """Yield the edits that add conditional elements; ``<a/>`` gets an end tag."""
     end = tag_end(source, start)
     is_empty = source[end - 2 : end] == b"/>"
     # White space alone would be left in an element that had none.
@@ -252,21 +253,20 @@ def declared(
     changed: Collection[str],
     argument: str,
 ) -> Iterator[SourceEdit]:
-    """Yield the argument and its property in the descriptions' own files, and the property in other
-    files that are ``changed``: packages that are not read include them, too. ``texts`` are the
-    bytes of all, by real path. Source: xacro README (``default`` of a property)."""
+    """Yield the argument and property of descriptions, and the property of ``changed`` files."""
+    # Unread packages include these, too. Source: xacro README (``default`` of a property).
     own = {os.path.realpath(it.path) for it in found}
     argued = f'\n  <xacro:arg name="{argument}" default=""/>'
     value = f'\n  <xacro:property name="{argument}" value="$(arg {argument})"/>'
     for path in own:
-        yield from _first(path, texts[path], argued + value)
+        yield from _first_in_root(path, texts[path], argued + value)
     for path in {*changed} - own:
         if b"<robot" in texts[path]:
             text = f'\n  <xacro:property name="{argument}" default=""/>'
-            yield from _first(path, texts[path], text)
+            yield from _first_in_root(path, texts[path], text)
 
 
-def _first(path: str, source: bytes, text: str) -> Iterator[SourceEdit]:
+def _first_in_root(path: str, source: bytes, text: str) -> Iterator[SourceEdit]:
     """Yield the edits that put a text first in the root element."""
     start = read_document(source, path).starts[0]
     end = tag_end(source, start)

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A folder -> its descriptions, each xacro expanded with what its arguments are by default, and with
-one of them otherwise.
+"""Reads a folder's descriptions, each xacro with its default arguments and with one other.
 
-A switch is turned; an argument that an expression compares with a word gets that word, under whatever
-name a property or a macro has it. Several at a time are not tried.
-"""
+A switch is turned; an argument that an expression compares with a word gets that word, under
+whatever name a property or a macro has it. Several at a time are not tried."""
 
 import os
 import re
@@ -36,8 +34,9 @@ class Expanding(NamedTuple):
 
 
 class Description(NamedTuple):
-    """A description file, what is in it, and, of a xacro, how it was expanded; ``arguments`` are those
-    of this configuration alone."""
+    """A description file and what is in it; ``read`` is how a xacro was expanded.
+
+    ``arguments`` are those of this configuration alone."""
 
     path: str
     inventory: Inventory
@@ -46,7 +45,7 @@ class Description(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Its path, with its arguments."""
+        """Its path with its arguments, for messages."""
         return " ".join((self.path, *(f"{name}:={it}" for name, it in self.arguments.items())))
 
     @property
@@ -56,8 +55,7 @@ class Description(NamedTuple):
 
 
 class Package(NamedTuple):
-    """What a folder has: its files by kind, its descriptions, SRDFs among them, and those that could
-    not be read, with the reason."""
+    """A folder's files by kind, its descriptions and SRDFs, and unreadable ones with the reason."""
 
     found: Found
     descriptions: tuple[Description, ...]
@@ -87,8 +85,8 @@ def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
 def read_text(
     path: str, how: Expanding, texts: Mapping[str, bytes] | None = None
 ) -> tuple[bytes, Expansion | None]:
-    """Return the text of a description; ``texts`` are the bytes of files that differ from the disk,
-    by their real paths. Raises InputError."""
+    """Return the text of a description, with ``texts`` of changed files by real path."""
+    # Raises InputError.
     known = texts or {}
     data = known.get(os.path.realpath(path)) or read_file(path)
     if not is_xacro(path):
@@ -144,7 +142,7 @@ def configurations(
     """Yield a xacro's other configurations with other texts; failures are noted in ``unread``."""
     assert it.read is not None
     known = {it.inventory.document.source}
-    for name, value in islice(_values(it.read.sources, how.arguments), MOST):
+    for name, value in islice(_other_values(it.read.sources, how.arguments), MOST):
         given = Expanding(how.reach, {**how.arguments, name: value})
         try:
             data, read = read_text(it.path, given)
@@ -157,12 +155,16 @@ def configurations(
         known.add(data)
 
 
-def _values(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+def _other_values(
+    sources: Mapping[str, bytes], given: Mapping[str, str]
+) -> Iterator[tuple[str, str]]:
     """Yield arguments that are not given, with values that they do not have by default."""
     roots = [read_document(data, it).root for it, data in sources.items() if b"<robot" in data]
     elements = [it for root in roots for it in root.iter("*")]
-    others = list(_others(elements))
-    words = set(chain.from_iterable(_compared(str(it)) for one in elements for it in one.values()))
+    others = list(_aliases(elements))
+    words = set(
+        chain.from_iterable(_compared_words(str(it)) for one in elements for it in one.values())
+    )
     # The arguments with their defaults; the first one counts.
     defaults: dict[str, str] = {}
     for it in elements:
@@ -179,7 +181,7 @@ def _values(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[
         yield from ((name, word) for word in sorted(found - {"", default}))
 
 
-def _others(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
+def _aliases(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
     """Yield a name, and another one under which its value is known."""
     for element in elements:
         is_property = str(element.tag).endswith("xacro}property")
@@ -188,8 +190,8 @@ def _others(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
                 yield found[1] or found[2], element.get("name", "") if is_property else str(key)
 
 
-def _compared(text: str) -> Iterator[tuple[str, str]]:
-    """Yield names with the words that an expression compares them with."""
+def _compared_words(text: str) -> Iterator[tuple[str, str]]:
+    """Yield names with the values that an expression compares them with."""
     for it in _COMPARED.finditer(text):
         yield from ((it[1], word[1]) for word in _WORD.finditer(it[2] or it[3]))
     yield from ((it[2], it[1][1:-1]) for it in _BEHIND.finditer(text))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where ``${prefix}`` goes in the sources, so that the names of a description get it and nothing else.
+"""Finds where ``${prefix}`` goes in the sources so that it changes the names and nothing else.
 
 A name is used in an attribute or a text of a xacro element. There the prefix goes, whatever makes the
 name: ``<parent link="${prefix}${parent}"/>``. Where the same place is also that of a name that all
@@ -40,9 +40,10 @@ class PlacedNames(NamedTuple):
 
 
 class _Name(NamedTuple):
-    """A place for a prefix in a value of description number ``of``: the spot where the value is used,
-    that where the piece is made that begins here, the spots of its ``other`` pieces, and the change of
-    it, if there is one."""
+    """A place for a prefix in a value of description ``of``, and its change if there is one.
+
+    ``used`` is where the value is used, ``made`` where its piece is made, ``other`` its other
+    pieces."""
 
     of: int
     used: Spot | None
@@ -56,11 +57,10 @@ def placed(
     changes: Sequence[Sequence[ValueEdit]],
     written: Callable[[ValueEdit], bytes],
 ) -> PlacedNames:
-    """Return the edits of the sources for the changes of each description. They share sources: what
-    one of them needs at a place, the others get. ``written`` returns a change's text in the
-    source."""
+    """Return the edits of the sources for the changes of each description."""
+    # They share sources: what one needs at a place, the others get.
     both = enumerate(zip(found, changes, strict=True))
-    names = [name for of, (it, own) in both for name in _names(of, it, own)]
+    names = [name for of, (it, own) in both for name in _places_in(of, it, own)]
     deep = _made_elsewhere(names)
     stay = {it.made for it in names if it.made and it.change is None}
     others = stay.union(*(it.other for it in names))
@@ -80,8 +80,8 @@ def placed(
     return made
 
 
-def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_Name]:
-    """Return each change, and each value that is made at the same places and does not change."""
+def _places_in(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_Name]:
+    """Yield the places of changes, and of values at the same places that do not change."""
     assert it.read is not None
     read = it.read
     real = {file: os.path.realpath(file) for file in read.sources}
@@ -93,13 +93,19 @@ def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_
             # Each with the offset in the value at which it ends.
             pieces = [*zip(accumulate(len(it.text) for it in own), own, strict=True)]
             for at in mine or [len(value) - len(value.lstrip())]:
-                used = _used(read, number, attribute, pieces, at)
-                made, other = _copied_from(read, pieces, at)
+                used = _spot_of_use(read, number, attribute, pieces, at)
+                made, other = _spot_of_copy(read, pieces, at)
                 places = frozenset((real[file], start) for file, start in other)
-                yield _Name(of, _real(used, real), _real(made, real), places, mine.get(at))
+                yield _Name(
+                    of,
+                    _with_real_path(used, real),
+                    _with_real_path(made, real),
+                    places,
+                    mine.get(at),
+                )
 
 
-def _real(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
+def _with_real_path(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
     """Return the spot with the real path of its file."""
     return spot and (real[spot[0]], spot[1])
 
@@ -111,7 +117,7 @@ def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
         yield "", element.text
 
 
-def _used(
+def _spot_of_use(
     read: Expansion, number: int, attribute: str, pieces: Sequence[tuple[int, Piece]], at: int
 ) -> Spot | None:
     """Return where a prefix before character ``at`` goes in the element that has the value."""
@@ -138,7 +144,7 @@ def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
     return begin, source.find(b"<", begin)
 
 
-def _copied_from(
+def _spot_of_copy(
     read: Expansion, pieces: Sequence[tuple[int, Piece]], at: int
 ) -> tuple[Spot | None, frozenset[Spot]]:
     """Return where the piece at ``at`` is copied from, if in no expression; and the other pieces."""
@@ -154,7 +160,7 @@ def _copied_from(
 
 
 def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
-    """Return the spots of use at which no prefix can go: it comes from where the names are made."""
+    """Return the spots of use where no prefix can go, as the name is made elsewhere."""
     groups = lists_by_key((it.used, it) for it in names)
     deep = {it for it, group in groups.items() if len({name.change is None for name in group}) > 1}
     while True:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One name of a package's descriptions changed everywhere: where it is made, and where it is used.
+"""Renames one name of a package's descriptions wherever it is made or used.
 
 Which values hold the name is what a rewrite asks, too: the rewriters find it, the map of renames has
 nothing but this one name. It is changed in the source of each xacro, and verified by expanding all of
@@ -64,9 +64,10 @@ MOST_MENTIONS = 50
 
 
 class Renaming(NamedTuple):
-    """What a rename changes. ``before`` and ``after`` are the bytes of the files that change, by path;
-    ``places`` is in how many places, ``mentions`` are lines of other files that have the name too and
-    were left, as ``file:line``; ``unread`` are descriptions that could not be read, with the reason."""
+    """What a rename changes: ``before`` and ``after`` are the bytes of files, by path.
+
+    ``places`` is their number; ``mentions`` are lines of other files that have the name and
+    stay, as ``file:line``; ``unread`` are descriptions that could not be read, with the reason."""
 
     before: Mapping[str, bytes]
     after: Mapping[str, bytes]
@@ -87,7 +88,7 @@ class _Symbol(NamedTuple):
         return make_naming()._replace(separators={}, own=own)
 
     def respelled(self, kind: str, name: str) -> str:
-        """Return the new spelling of a name."""
+        """Return the new name of a name."""
         return self.new if name == self.old and kind in KINDS[self.kind] else name
 
 
@@ -103,11 +104,11 @@ def rename_symbol(
     trust: bool = False,
     distro: str = "",
 ) -> Renaming:
-    """Rename a link, joint, frame or topic in every description of ``folder``, in the xacro files that
-    make its name, in SRDFs, parameters, RViz configs, bridges, MoveIt's files and behavior trees.
+    """Rename a link, joint, frame or topic in all descriptions and related files of ``folder``.
 
-    Writes nothing. Raises UsageError for names that cannot be, InputError where the name is put
-    together so that no edit changes it alone."""
+    These are xacro files that make its name, SRDFs, parameters, RViz configs, bridges, MoveIt's
+    files and behavior trees. Writes nothing. Raises UsageError for names that cannot be,
+    InputError where the name is put together so that no edit changes it alone."""
     symbol = _Symbol(old, new, kind)
     if symbol.kind not in KINDS:
         raise UsageError(f"kind {symbol.kind!r} is not known, use one of {', '.join(KINDS)}")
@@ -121,12 +122,12 @@ def rename_symbol(
     package = read_package(folder, tree, how)
     if not package.descriptions:
         raise InputError(next(iter(package.unread.values()), f"{folder}: it has no description"))
-    return _renamed(symbol, package, folder, how)
+    return _renaming_of(symbol, package, folder, how)
 
 
-def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> Renaming:
+def _renaming_of(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> Renaming:
     """Return the package with the name changed in its descriptions and the related files."""
-    changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
+    changes = {it.path: list(_name_edits(it, symbol)) for it in package.descriptions}
     if not any(changes.values()):
         # One that is nowhere declared is of no kind.
         every = chain.from_iterable(chain(*(it.inventory.names for it in package.descriptions)))
@@ -135,7 +136,7 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
         what = f"a {symbol.kind} {symbol.old!r}" + (f"; {near}" if near else "")
         raise UsageError(f"{folder}: no description has {what}")
     _check_free(symbol, package, changes)
-    edits = set(chain.from_iterable(_edits(it, changes[it.path]) for it in package.descriptions))
+    edits = set(chain.from_iterable(_to_edits(it, changes[it.path]) for it in package.descriptions))
     after = edited(texts_of(package.descriptions), edits)
     for it in package.descriptions:
         wanted = expected(it.inventory.document, changes[it.path])
@@ -149,7 +150,7 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
     beside = dict(_changed_related_files(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
-    found = tuple(_mentions(package, symbol.old, {os.path.realpath(it) for it in after}))
+    found = tuple(_mention_lines(package, symbol.old, {os.path.realpath(it) for it in after}))
     after = as_named(after, package.descriptions)
     before = {path: read_bytes(path) for path in after}
     return Renaming(before, after, places, found, package.unread)
@@ -158,7 +159,7 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
 def _check_free(
     symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[ValueEdit]]
 ) -> None:
-    """Refuse a new name that the folder has or uses: the two would be one. A link is a frame, too."""
+    """Raise UsageError if the folder has or uses the new name, as a link or frame, too."""
     kinds = next(it for it in KINDS.values() if symbol.kind in it)
     for it in package.descriptions:
         for one in chain.from_iterable(it.inventory.names):
@@ -171,7 +172,7 @@ def _check_free(
         raise UsageError(f"{path}:{line} uses the {symbol.kind} {symbol.new!r} already")
 
 
-def _changes(it: Description, symbol: _Symbol) -> Iterator[ValueEdit]:
+def _name_edits(it: Description, symbol: _Symbol) -> Iterator[ValueEdit]:
     document, claims, _, declared, *_ = it.inventory
     renames = make_renames(it.inventory, symbol.naming)
     for claim, spelling in zip(claims, renames.values, strict=True):
@@ -182,7 +183,7 @@ def _changes(it: Description, symbol: _Symbol) -> Iterator[ValueEdit]:
         yield change_of(document, claim, 0, len(claim.value), text)
 
 
-def _edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceEdit]:
+def _to_edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceEdit]:
     document = it.inventory.document
     for change in changes:
         if it.read is None:
@@ -235,7 +236,7 @@ def _files_with(
                 yield path, data, file, starts
 
 
-def _mentions(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:
+def _mention_lines(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:
     """Yield lines that have the name, of files that do not change."""
     word = re.compile(rb"(?<![\w/])" + re.escape(old.encode()) + rb"(?![\w/])")
     for path in chain.from_iterable(files_below(it, _TEXTS) for it in package.found.folders):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Changes of the values of an expansion -> edits of the xacro files that make them.
+"""Turns changes of the values of an expansion into edits of the xacro files that make them.
 
 A value is put together from pieces (``description/sources/trace.py``). A change can be made where all
 of it is in one piece that is in a file as it is; what an expression computes is left to its author.
@@ -17,8 +17,9 @@ from multibot_rewrite.description.steps.document import Document, place_in, valu
 
 
 class ValueEdit(NamedTuple):
-    """In the value of an attribute of an element, or its text where ``attribute`` is empty: characters
-    ``start`` to ``end`` become ``new``. ``element`` counts in the order of the document."""
+    """Characters ``start`` to ``end`` of a value become ``new``; without attribute, of a text.
+
+    ``element`` counts in the order of the document."""
 
     element: int
     attribute: str
@@ -55,7 +56,7 @@ class Composed(NamedTuple):
 
 def source_edit(read: Expansion, document: Document, change: ValueEdit) -> SourceEdit | Composed:
     """Return the edit of a source that makes a change."""
-    start, end, new = _trimmed(change)
+    start, end, new = _changed_part(change)
     pieces = read.pieces.of(change.element, change.attribute, change.value)
     at = 0
     touched = []
@@ -68,10 +69,12 @@ def source_edit(read: Expansion, document: Document, change: ValueEdit) -> Sourc
         if at < end and start < last:
             touched.append(piece)
         at = last
-    return Composed(change.value, _place(read, document, change, touched), _why_not_edited(touched))
+    return Composed(
+        change.value, _place_of_change(read, document, change, touched), _why_not_edited(touched)
+    )
 
 
-def _trimmed(change: ValueEdit) -> tuple[int, int, str]:
+def _changed_part(change: ValueEdit) -> tuple[int, int, str]:
     """Return what of a change is different: from, to, and the new characters."""
     _, _, value, start, end, new = change
     while start < end and new and value[start] == new[0]:
@@ -81,7 +84,9 @@ def _trimmed(change: ValueEdit) -> tuple[int, int, str]:
     return start, end, new
 
 
-def _place(read: Expansion, document: Document, change: ValueEdit, touched: list[Piece]) -> str:
+def _place_of_change(
+    read: Expansion, document: Document, change: ValueEdit, touched: list[Piece]
+) -> str:
     if known := next((it for it in touched if it.file in read.sources), None):
         return place(known.file, read.sources[known.file], known.start)
     return place_of(read, change.element) or document.file
@@ -125,7 +130,7 @@ def spans(
 
 
 def edited(sources: Mapping[str, bytes], edits: Iterable[SourceEdit]) -> dict[str, bytes]:
-    """Return the files that change, with their new bytes; raises ValueError where two edits meet."""
+    """Return the changed files with their new bytes; raises ValueError for overlapping edits."""
     made: dict[str, bytes] = {}
     every = sorted(set(edits))
     for file in dict.fromkeys(it.file for it in every):

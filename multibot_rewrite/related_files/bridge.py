@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A user's ros_gz_bridge file for one robot -> its entries for any robot, and those that all share; an
-entry: its keys, what the bridge refuses, its names before and after.
+"""Rewrites a ros_gz_bridge file: entries for each robot, and those that all share.
 
-Sources: ros_gz jazzy ``ros_gz_bridge/src/bridge_config.cpp``; gz-sim's names ``/model/<name>/...``.
-
-Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its messages)."""
+Sources: gazebosim/ros_gz jazzy ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its
+messages); gz-sim's names ``/model/<name>/...``."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -161,17 +159,17 @@ def rewrite_bridge(
     own = [it for it in entries if it.own]
     shared = [it for it in entries if not it.own]
     named = _named_file(document, context, entries)
-    frames = [site for it in own for site in _sites(it) if site.kind == "frame"]
+    frames = [site for it in own for site in _entry_sites(it) if site.kind == "frame"]
     made = ((it, spelled_text(context, {}, it)) for it in frames)
-    splices = [splice for it in own for splice in _splices(document, it)]
+    splices = [splice for it in own for splice in _entry_splices(document, it)]
     splices += splices_of(document.text, document.file, made)
     template = (
-        make_template(document.text, [*_only(document, own), *splices])
+        make_template(document.text, [*_cut_others(document, own), *splices])
         if own
         else make_template("", ())
     )
-    text = cut_out(document, 0, len(document.text), _only(document, shared)) if shared else ""
-    whole = make_template(document.text, [*_only(document, entries), *splices])
+    text = cut_out(document, 0, len(document.text), _cut_others(document, shared)) if shared else ""
+    whole = make_template(document.text, [*_cut_others(document, entries), *splices])
     return BridgeFile(RelatedFile(template, named), text, whole)
 
 
@@ -180,7 +178,7 @@ def read_bridge(document: YamlText, context: Context) -> NamedFile:
     model, nowhere = model_of(document), Block(0, 0, 0)
     loaded = (it for it in items(document.root) if not any(faults(it)))
     maps = (it for it in loaded if isinstance(it, yaml.MappingNode))
-    entries = [_entry(it, nowhere, context, model, NOTHING, "") for it in maps]
+    entries = [_entry_of(it, nowhere, context, model, NOTHING, "") for it in maps]
     return _named_file(document, context, entries)
 
 
@@ -200,14 +198,14 @@ def _entries(
     assert document.root is not None
     found = zip(document.root.value, blocks(document, document.root), strict=True)
     return [
-        _entry(node, block, context, model, known, above)
+        _entry_of(node, block, context, model, known, above)
         for node, block in found
         if not any(faults(node))
     ]
 
 
 def _named_file(document: YamlText, context: Context, entries: Iterable[BridgeEntry]) -> NamedFile:
-    names = tuple(site for it in entries for site in _sites(it))
+    names = tuple(site for it in entries for site in _entry_sites(it))
     others = tuple(
         site_at(value, "", text_in(row, key), key)
         for row in (row_of(it.node) for it in entries)
@@ -219,7 +217,7 @@ def _named_file(document: YamlText, context: Context, entries: Iterable[BridgeEn
     )
 
 
-def _sites(entry: BridgeEntry) -> Iterator[Site]:
+def _entry_sites(entry: BridgeEntry) -> Iterator[Site]:
     row = row_of(entry.node)
     if not text_in(row, SERVICE):
         ros = next(it for it in (BOTH, ROS, GZ) if text_in(row, it))
@@ -234,7 +232,7 @@ def _sites(entry: BridgeEntry) -> Iterator[Site]:
         yield site_at(row[FRAME][1], "frame", text_in(row, FRAME), FRAME)
 
 
-def _entry(
+def _entry_of(
     node: yaml.MappingNode,
     block: Block,
     context: Context,
@@ -256,11 +254,11 @@ def _entry(
     new_ros = robot_topic(context.topics, bare_ros, known)
     own = new_gz != gz or new_ros != ros or bool(PLACEHOLDER.search(ros + gz))
     if own:
-        new_gz, new_ros = _in_full(new_gz), _in_full(new_ros)
+        new_gz, new_ros = _absolute(new_gz), _absolute(new_ros)
     return BridgeEntry(node, block, bare_ros, bare_gz, new_ros, new_gz, own)
 
 
-def _in_full(name: str) -> str:
+def _absolute(name: str) -> str:
     """Return an absolute name, which the bridge's namespace does not change; a placeholder stays."""
     return name if PLACEHOLDER.search(name) else f"/{name.lstrip('/')}"
 
@@ -309,7 +307,7 @@ def _made_parts(context: Context, name: str) -> list[NamePart]:
     return parts if parts and (parts[0].kinds == STEM or is_model) else []
 
 
-def _splices(document: YamlText, entry: BridgeEntry) -> Iterator[Splice]:
+def _entry_splices(document: YamlText, entry: BridgeEntry) -> Iterator[Splice]:
     ends = ", " if entry.node.flow_style else newline(document) + " " * entry.node.start_mark.column
     for key, node in pairs(entry.node):
         if not isinstance(node, yaml.ScalarNode):
@@ -331,7 +329,7 @@ def _splices(document: YamlText, entry: BridgeEntry) -> Iterator[Splice]:
                 yield Splice(node.start_mark.index, node.end_mark.index, text)
 
 
-def _only(document: YamlText, kept: Sequence[BridgeEntry]) -> list[Splice]:
+def _cut_others(document: YamlText, kept: Sequence[BridgeEntry]) -> list[Splice]:
     """Return the splices that remove all other entries from the file."""
     assert document.root is not None
     stay = {it.block for it in kept}

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a related file is rewritten with, the same for every robot of one description; and a text
-with slots for a robot's namespace and tag: made once, filled for each robot.
-"""
+"""What a related file is rewritten with, and a text with slots for each robot's names."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -36,7 +34,7 @@ def number_slot(first: int) -> str:
 
 
 def check_no_slots(text: str, file: str) -> None:
-    """Raise InputError for a file that already holds one of the words that slots are made of."""
+    """Raise InputError for a file that contains the text of a slot."""
     found = _SLOT.search(text)
     if found:
         raise InputError(f"{file}: the word {found[0]} is reserved for this tool; use another word")
@@ -74,11 +72,12 @@ NO_FRAMES: Frames = {}
 
 
 class Context(NamedTuple):
-    """``names`` is the rename map of links, joints and frames, ``topics`` that of ROS names, both
-    with a slot for the robot. ``nodes`` maps a node's name in the node set to the full name it runs
-    under; nodes that serve all robots keep theirs. ``distro`` is the ROS release. ``frames`` are
-    those that the robots have in the place of a default: by the node's last name and the parameter.
-    """
+    """The rename maps, nodes and release with which a related file is rewritten.
+
+    ``names`` is the map of links, joints and frames, ``topics`` that of ROS names, both with a
+    slot for the robot. ``nodes`` maps a node's name in the node set to its full name; nodes that
+    serve all robots keep theirs. ``frames`` replace defaults: by the node's last name and the
+    parameter."""
 
     names: RelatedNames
     topics: RelatedNames
@@ -96,8 +95,8 @@ def make_context(
     words: Stems = NO_WORDS,
     given: frozenset[str] = frozenset(),
 ) -> Context:
-    """Return the context of a description (not rewritten) and the nodes of its robots; ``own``,
-    ``words`` and ``given`` are those of ``RelatedNames``."""
+    """Return the context of a description (not rewritten) and its robots' nodes."""
+    # ``own``, ``words`` and ``given`` are those of ``RelatedNames``.
     nodes = {
         it.name: f"/{it.name}" if it.shared else full_name(it.name, naming, it.apart)
         for it in facts

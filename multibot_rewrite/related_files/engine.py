@@ -56,8 +56,8 @@ def text_of(context: Context, facts: Facts, site: Site) -> str:
 
 
 def with_slots(file: NamedFile, facts: Facts, more: Iterable[Splice] = ()) -> RelatedFile:
-    """Return a file in which each name has its text for a robot, and ``more`` splices are made; raises
-    as ``check_no_slots`` and ``splices_of``."""
+    """Return a file with slots in its names, and ``more`` splices; raises InputError."""
+    # As ``check_no_slots`` and ``splices_of``.
     check_no_slots(file.text, file.file)
     made = ((it, text_of(file.context, facts, it)) for it in file.names)
     return RelatedFile(

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kinds of related files: how each is read, made for any robot, and rewritten
-alone.
-"""
+"""The kinds of related files: how each is read, and rewritten for any robot or alone."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
@@ -49,8 +47,8 @@ def read_named(kind: str, data: bytes, file: str, context: Context) -> NamedFile
 def made_for_any(
     kind: str, data: bytes, file: str, context: Context, facts: Iterable[NodeFacts] = ()
 ) -> RelatedFile:
-    """Return a file with slots for a robot; ``facts`` are those of the robot's nodes, whose remap rules
-    move topics too. RViz and bridges are for all robots. Raises InputError as ``read_named``."""
+    """Return a file with slots for a robot; raises InputError as ``read_named``."""
+    # Remap rules of the robot's nodes, ``facts``, move topics too.
     return _WRITERS[kind](data, file, context, facts)
 
 
@@ -94,8 +92,7 @@ def kind_alone(data: bytes, file: str) -> str:
 
 
 class OneFile(NamedTuple):
-    """A file for one robot: its text, what was read, what its rewrite found, and how many names of the
-    description did not become the robot's."""
+    """A file for one robot; ``kept`` is how many declared names did not become the robot's."""
 
     text: str
     file: NamedFile
@@ -106,9 +103,8 @@ class OneFile(NamedTuple):
 def rewrite_alone(
     kind: str, data: bytes, file: str, context: Context, robot: str, number: int
 ) -> OneFile:
-    """Return the file for a robot with one name in names and in the graph, the ``number``-th after the
-    first. Topics that a bridge has for all robots are in the file of the first. Raises InputError for a
-    file that its reader rejects."""
+    """Return the file for a robot, the ``number``-th after the first; raises InputError."""
+    # Topics that a bridge has for all robots are in the file of the first.
     if kind == RVIZ:
         document = read_yaml(data, file)
         names, topics = (it._replace(robot=robot) for it in (context.names, context.topics))
@@ -124,12 +120,12 @@ def rewrite_alone(
         text = fill_template(template, robot, robot, number).replace(MODEL_SLOT, robot)
         named, found = made.file, made.findings
     kept = _unrenamed_count(
-        named, read_named(kind, text.encode(), file, _of(context, robot)), robot
+        named, read_named(kind, text.encode(), file, _own_context(context, robot)), robot
     )
     return OneFile(text, named, found, kept)
 
 
-def _of(context: Context, robot: str) -> Context:
+def _own_context(context: Context, robot: str) -> Context:
     """Return the context of the robot's own description, in which every name is the robot's."""
     names = context.names._replace(robot=robot)
     declared = {

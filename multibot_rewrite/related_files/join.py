@@ -42,11 +42,12 @@ from multibot_rewrite.related_files.joined import (
 
 
 class Joined(NamedTuple):
-    """One robot of several descriptions. ``srdf`` is the SRDF of all that have one, ``controllers``
-    the one file of their controllers' parameters, ``moveit`` MoveIt's files by name, one of each kind,
-    ``rviz`` the one RViz config; they are empty where no part has them. ``parts`` are
-    their names; ``notes`` are what was left out and what two parts have in the running system,
-    ``findings`` are about names without the prefix."""
+    """One robot of several descriptions, with the SRDF and related files of all parts.
+
+    They are empty where no part has them: ``srdf``, ``controllers`` (parameters), ``moveit``
+    (files by name, one of each kind), ``rviz``. ``parts`` are their names; ``notes`` are what
+    was left out and what two parts have in the running system, ``findings`` are about names
+    without the prefix."""
 
     data: bytes
     srdf: bytes
@@ -64,8 +65,7 @@ class Joined(NamedTuple):
 
     @property
     def not_verified(self) -> tuple[str, ...]:
-        """Why a name may lack its prefix, with counts, as ``1 plugin not known``; empty where the join
-        is verified. Raises nothing."""
+        """Why a name may lack its prefix, with counts; empty if verified. Raises nothing."""
         return not_verified(self.findings)
 
 
@@ -103,8 +103,7 @@ def join(
 
 
 def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
-    """Return the joined parts without comments of the join, refused if a name lacks a prefix. Raises
-    InputError that names ``place``."""
+    """Return the joined parts without comments; raises InputError if a name lacks a prefix."""
     given, _ = plain_texts(parts, trust)
     try:
         made = join_texts(given, tree)
@@ -122,7 +121,7 @@ def _with_related_files(
     srdfs, controllers, configs = [], [], []
     for it, part in zip(given, (it.part for it in made.parts), strict=True):
         before = _without_prefix(part, tree) if it.controllers or it.rviz else part.inventory
-        srdf = _srdf(it, it.srdf, trust) if has_srdf and it.srdf is not None else None
+        srdf = _read_srdf(it, it.srdf, trust) if has_srdf and it.srdf is not None else None
         srdfs.append(
             renamed_srdf(part, srdf.data, srdf.file, tree) if srdf else PartSemantics(part, b"", "")
         )
@@ -132,7 +131,7 @@ def _with_related_files(
     semantics = joined_srdf(srdfs, made.data, samples) if has_srdf else JoinedSemantics(b"", ())
     files = joined_files(controllers) if controllers else JoinedFile(b"", ())
     rviz = joined_rviz(configs) if configs else JoinedFile(b"", ())
-    moveit = joined_moveit(_moveit(given, made, tree, trust))
+    moveit = joined_moveit(_moveit_of_parts(given, made, tree, trust))
     named = {it.part.name: read(it.text, it.part.file, tree.definitions).names for it in made.parts}
     met = (
         f"{said(f'{it.robot} and {it.other}', it.name, it.twin)};"
@@ -140,7 +139,14 @@ def _with_related_files(
         for it in meetings(named, prefixing())
     )
     told = (f"{file}: {what}" for file, what in moveit.notes)
-    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *told, *rviz.notes)
+    notes = (
+        *_relative_files(made),
+        *made.notes,
+        *semantics.notes,
+        *files.notes,
+        *told,
+        *rviz.notes,
+    )
     notes, names = (*notes, *met), tuple(it.part.name for it in made.parts)
     return Joined(
         made.data, semantics.data, files.data, names, notes, made.findings, moveit.files, rviz.data
@@ -149,14 +155,15 @@ def _with_related_files(
 
 @checked
 def split(source: Source, *, definitions: Iterable[str] = (), distro: str = "") -> dict[str, bytes]:
-    """Return the parts that ``join`` joined, by name, as they were. Raises InputError for a text that
-    no join made, or that was edited so that a part cannot be recognised."""
+    """Return the parts that ``join`` joined, by name; raises InputError for another text.
+
+    It also does so if the text was edited so that a part cannot be recognised."""
     read_in = read_whole(source, {})
     tree = builtin_tree(tuple(definitions), release_here(distro))
     return split_text(read_in.data, read_in.file, tree)
 
 
-def _relative(made: JoinedText) -> Iterator[str]:
+def _relative_files(made: JoinedText) -> Iterator[str]:
     """Yield notes on meshes and pictures that are looked up from the folder of a part's file."""
     for it in made.parts:
         root, file = it.part.inventory.document.root, it.part.file
@@ -168,18 +175,18 @@ def _relative(made: JoinedText) -> Iterator[str]:
             yield f"{what}{more}; write package://NAME/..."
 
 
-def _srdf(part: Part, srdf: Source, trust: bool) -> SourceText:
+def _read_srdf(part: Part, srdf: Source, trust: bool) -> SourceText:
     return read_whole(srdf, args_for(srdf, part.description, part.xacro_args), trust)
 
 
-def _moveit(
+def _moveit_of_parts(
     given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool
 ) -> Iterator[PartMoveit]:
     for it, mounted in zip(given, made.parts, strict=True):
         part, said = mounted.part, NOTHING
         before = _without_prefix(part, tree) if it.moveit else part.inventory
         if it.moveit and it.srdf is not None:
-            text = _srdf(it, it.srdf, trust)
+            text = _read_srdf(it, it.srdf, trust)
             document = read_document(text.data, text.file)
             said = collect(document, tree, before.declared).declared
         for at in it.moveit:

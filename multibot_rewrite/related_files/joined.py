@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Related files of parts as those of the robot that they make: parameters that one controller manager
-gets, MoveIt's files for one move_group, one RViz config.
+"""Joins related files of parts: parameters, MoveIt's files for one move_group, an RViz config.
 
-A controller of a part has the part's prefix, as its joints, links and groups have; one controller
-manager and one broadcaster of all joint states serve all parts. Values stay as they are written:
-what looks like a number to rcl and not to PyYAML (``1e-3``) is one still. Servo moves one group:
-its files are left out, and told. The first RViz config stays; of each further one the displays that
-it does not show yet follow as a group with the part's name.
-
-Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it takes all joints.
-"""
+A controller of a part has the part's prefix, as its joints, links and groups have; one
+controller manager and one broadcaster of all joint states serve all parts. Values stay as they
+are written: what looks like a number to rcl and not to PyYAML (``1e-3``) is one still. Servo
+moves one group: its files are left out, with a note. The first RViz config stays; of each
+further one the displays that it does not show yet follow as a group with the part's name.
+Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it takes all joints."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -72,7 +69,7 @@ _SOME = frozenset(("joints", "interfaces"))
 
 
 class PartFile(NamedTuple):
-    """A part's parameter file as its prefix names it: its sections, and nodes that serve all parts."""
+    """A part's parameter file with the prefix: its sections, and nodes that serve all parts."""
 
     file: str
     sections: tuple[RawSection, ...]
@@ -80,7 +77,7 @@ class PartFile(NamedTuple):
 
 
 class JoinedFile(NamedTuple):
-    """The one file, and what a person should know."""
+    """The one file, and notes for the user."""
 
     data: bytes
     notes: tuple[str, ...]
@@ -89,7 +86,7 @@ class JoinedFile(NamedTuple):
 def part_file(data: bytes, file: str, part: Inventory, prefix: str) -> PartFile:
     """Return a file with its part's prefix; ``part`` is described without it. Raises InputError."""
     before = raw_sections(read_yaml(data, file))
-    shared = frozenset(_shared(before))
+    shared = frozenset(_shared_names(before))
     if not prefix:
         return PartFile(file, tuple(before), shared)
     naming = prefixing((*PREFIXED, "node"), PREFIX)
@@ -98,10 +95,10 @@ def part_file(data: bytes, file: str, part: Inventory, prefix: str) -> PartFile:
     # What a rewrite adds for a node of each robot has no place in one that serves all.
     there = {it.path: {key.value for key, _ in pairs(it.body)} for it in before}
     for it in made:
-        if _node(it) in shared - {MANAGER}:
+        if _node_name(it) in shared - {MANAGER}:
             known = there.get(it.path, ())
             it.body.value = [pair for pair in pairs(it.body) if pair[0].value in known]
-    kept = (it for it in made if there.get(it.path) or _node(it) not in shared)
+    kept = (it for it in made if there.get(it.path) or _node_name(it) not in shared)
     return PartFile(file, tuple(kept), shared)
 
 
@@ -114,21 +111,21 @@ def prefixed(
     naming: Naming,
     prefix: str,
 ) -> YamlText:
-    """Return a file of a part as its prefix spells it, by what is ``declared`` without."""
+    """Return a file of a part with its prefix; ``declared`` are the names without it."""
     names = related_file_names(declared, naming, "", NO_OWN)
     words = words_of(part.claims)
     context = make_context(names.declared, naming, (), part.release, names.own, words)
     return read_yaml(rewrite_alone(kind, data, file, context, prefix, 0).text.encode(), file)
 
 
-def _node(section: RawSection) -> str:
+def _node_name(section: RawSection) -> str:
     return section.path.rpartition("/")[2]
 
 
-def _shared(sections: Sequence[RawSection]) -> Iterator[str]:
+def _shared_names(sections: Sequence[RawSection]) -> Iterator[str]:
     """Yield the controller manager, and each broadcaster of all joints."""
     yield MANAGER
-    set_for = {_node(it): {key.value for key, _ in pairs(it.body)} for it in sections}
+    set_for = {_node_name(it): {key.value for key, _ in pairs(it.body)} for it in sections}
     for name, type_ in controller_types(sections).items():
         if type_ == _OF_ALL and not _SOME & set_for.get(name, set()):
             yield name
@@ -146,7 +143,7 @@ def joined_files(files: Sequence[PartFile]) -> JoinedFile:
                 raise InputError(f"{it.file}: {what}; give the part a prefix of its own")
             known[name] = it.file
         for one in it.sections:
-            key = MANAGER if _node(one) == MANAGER else one.path
+            key = MANAGER if _node_name(one) == MANAGER else one.path
             if key not in sections:
                 sections[key] = one
                 continue
@@ -189,7 +186,7 @@ _CALLED = {"controllers": "moveit_controllers"}
 
 
 class PartMoveit(NamedTuple):
-    """A file of a part, as its prefix spells it."""
+    """A MoveIt file of a part, with the part's prefix."""
 
     file: str
     kind: str
@@ -197,15 +194,16 @@ class PartMoveit(NamedTuple):
 
 
 class JoinedMoveit(NamedTuple):
-    """The joined files by their names, and what a person should know: a file, and what of it."""
+    """The joined files by their names, and notes for the user: a file, and what of it."""
 
     files: Mapping[str, bytes]
     notes: tuple[tuple[str, str], ...]
 
 
 def part_moveit(data: bytes, file: str, part: Inventory, said: Declared, prefix: str) -> PartMoveit:
-    """Return a file with the prefix of its part, whose SRDF declares ``said``. Raises InputError for
-    one that is not MoveIt's, UsageError if it has groups and the part has no SRDF."""
+    """Return a file with the prefix of its part, whose SRDF declares ``said``."""
+    # Raises InputError for one that is not MoveIt's, UsageError if it has groups and the part has
+    # no SRDF.
     document = read_yaml(data, file)
     kind = file_kind(document)
     if prefix and kind == "kinematics" and not said.get("group"):
@@ -256,7 +254,7 @@ def _spell_alike(roots: Sequence[yaml.MappingNode]) -> None:
 
 
 class PartRviz(NamedTuple):
-    """The config of a part, called ``name``, as its prefix spells it."""
+    """The config of the part ``name``, with its prefix."""
 
     name: str
     file: str
@@ -264,8 +262,7 @@ class PartRviz(NamedTuple):
 
 
 def part_rviz(data: bytes, file: str, part: Inventory, name: str, prefix: str) -> PartRviz:
-    """Return a config with the prefix of its part; ``part`` is its description without it. Raises
-    InputError for one that is not for RViz 2."""
+    """Return a config with the prefix of its part; raises InputError if it is not for RViz 2."""
     config = read_config(read_yaml(data, file))
     naming = prefixing((*PREFIXED, "group"), PREFIX)
     names = related_file_names(part.declared, naming, prefix, {})

@@ -63,18 +63,18 @@ def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
     text = _decoded_text(data, file)
     tokens = list(tokens_of(text, file))
     values, computed = {}, []
-    for _, key, value in (it for it in _options(tokens) if it[0] in FRAMES):
+    for _, key, value in (it for it in _assignments(tokens) if it[0] in FRAMES):
         if value and value.kind == "string":
             values[value.at] = key.text, value
         else:
-            computed.append(_site("", key, key.text))
-    names = tuple(_site("frame", it, key) for key, it in values.values())
+            computed.append(_token_site("", key, key.text))
+    names = tuple(_token_site("frame", it, key) for key, it in values.values())
     strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
-    others = tuple(_site("", it) for it in strings)
+    others = tuple(_token_site("", it) for it in strings)
     called = (at for at, it in enumerate(tokens) if it.text == "include")
     files = [next((it for it in tokens[at + 1 : at + 3] if it.text != "("), None) for at in called]
     included = tuple(
-        _site("", it)
+        _token_site("", it)
         for it in files
         if it and it.kind in ("string", "long") and _plain_text(it) not in OWN_FILES
     )
@@ -84,9 +84,8 @@ def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
 
 
 def lua_values(data: bytes, file: str) -> dict[str, Given]:
-    """Return the options that a file sets to a plain value, by their last names; of several values
-    the last one. Raises as ``rewrite_lua``."""
-    options = _options([*tokens_of(_decoded_text(data, file), file)])
+    """Return options that a file sets to plain values, by last name; raises as ``rewrite_lua``."""
+    options = _assignments([*tokens_of(_decoded_text(data, file), file)])
     return {name: Given(_plain_text(it), Place(file, it.line)) for name, _, it in options if it}
 
 
@@ -97,13 +96,13 @@ def _decoded_text(data: bytes, file: str) -> str:
         raise InputError(f"{file}: it is not UTF-8; save it as UTF-8") from None
 
 
-def _options(tokens: Sequence[Token]) -> Iterator[tuple[str, Token, Token | None]]:
+def _assignments(tokens: Sequence[Token]) -> Iterator[tuple[str, Token, Token | None]]:
     """Yield the names that are assigned to, where, and the value; None for no plain one."""
     for at, token in enumerate(tokens):
-        name, behind = _assigned(tokens, at)
+        name, behind = _assigned_name(tokens, at)
         if name and behind < len(tokens):
             value = tokens[behind]
-            simple = "\\" not in value.text and _ends(tokens, behind + 1)
+            simple = "\\" not in value.text and _is_expression_end(tokens, behind + 1)
             plain = value.kind in ("string", "number") or value.text in ("true", "false")
             yield name, token, value if simple and plain else None
 
@@ -122,7 +121,7 @@ def tokens_of(text: str, file: str) -> Iterator[Token]:
             line, start = line + lines, found.start() + found[0].rfind("\n") + 1
 
 
-def _assigned(tokens: Sequence[Token], at: int) -> tuple[str, int]:
+def _assigned_name(tokens: Sequence[Token], at: int) -> tuple[str, int]:
     """Return the name assigned to at a token, ``name =`` or ``["name"] =``, and its value's index."""
     token, texts = tokens[at], [it.text for it in tokens[at + 1 : at + 3]]
     if token.kind == "name" and texts[:1] == ["="]:
@@ -132,14 +131,14 @@ def _assigned(tokens: Sequence[Token], at: int) -> tuple[str, int]:
     return "", at
 
 
-def _ends(tokens: Sequence[Token], at: int) -> bool:
+def _is_expression_end(tokens: Sequence[Token], at: int) -> bool:
     """Return whether an expression ends before this token. If not, it is more than one string."""
     if at >= len(tokens) or tokens[at].text in (",", ";", "}"):
         return True
     return tokens[at].kind == "name" and tokens[at].text not in ("and", "or")
 
 
-def _site(kind: str, token: Token, key: str = "") -> Site:
+def _token_site(kind: str, token: Token, key: str = "") -> Site:
     end = token.at + len(token.text)
     value = token.text[1:-1] if kind else _plain_text(token)
     return Site(

@@ -41,8 +41,8 @@ def is_related_file(source: object) -> bool:
 
 
 def is_linted(path: str) -> bool:
-    """Return whether a file found in a folder is linted. Most YAML and XML files are not; one that
-    cannot be read is reported."""
+    """Return whether a file found in a folder is linted, as are few YAML and XML files."""
+    # One that cannot be read is reported.
     if path.lower().endswith(_XML):
         return is_related_file(path)
     text = _text_of(path) if is_related_file(path) else None

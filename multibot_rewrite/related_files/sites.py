@@ -20,8 +20,9 @@ FROM_NODE, FROM_PARENT, IN_FULL = "node", "parent", "full"
 
 
 class Slot(NamedTuple):
-    """A value as it is written: its place, its characters in the text, with their quotes, and what they
-    say. ``style`` is how YAML writes it, or one of those here."""
+    """A value as it is written: its place, its characters with quotes, and what they say.
+
+    ``style`` is how YAML writes it, or one of those here."""
 
     line: int
     column: int
@@ -41,13 +42,13 @@ AS_IS, XML, UNCLEAR = "as it is", "xml", "unclear"
 
 
 class Site(NamedTuple):
-    """A text in a file: its kind (empty where its use is not known), the name as it is for one
-    robot, what it is at, and its slot, of whose value it is the ``size`` characters from ``at``.
+    """A text in a file: its kind, the name as it is for one robot, its key and slot.
 
-    ``is_sure`` is false for a kind that is only guessed; ``in_key`` is true for a name in a key.
-    ``together`` is the same for names of one list. ``bare`` says that the reader takes a slash in
-    front off. ``node`` is the node that reads it, as the node sets call it, ``reach`` where that
-    resolves a relative name, ``param`` what is known of the parameter."""
+    ``kind`` is empty where the use is unknown. The text is the ``size`` characters from ``at``
+    of the slot's value. ``is_sure`` is false for a guessed kind; ``in_key`` is true for a name
+    in a key. ``together`` is the same for names of one list. ``bare`` says that the reader takes
+    a slash in front off. ``node`` is the node that reads it, as the node sets call it, ``reach``
+    where that resolves a relative name, ``param`` what is known of the parameter."""
 
     kind: str
     text: str

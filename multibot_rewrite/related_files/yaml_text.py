@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""YAML as text with positions: parse to find the scalars, change those and nothing else. Whole
-lines of it: the entries of lists and maps, to be copied, moved or left out.
+"""YAML as text with positions: finds scalars and whole lines of entries, and changes only those.
 
-Comments, quoting, order and line ends stay. Positions are character offsets.
-"""
+Comments, quoting, order and line ends stay. Positions are character offsets."""
 
 import os
 import re
@@ -88,8 +86,8 @@ def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
 
 
 def names_below(node: yaml.Node) -> yaml.MappingNode | None:
-    """Return the mapping whose keys are parts of names: the value, or what rcl reads in the same way, a
-    list of one mapping with one key that has a list (rcl_yaml_param_parser jazzy 9.2 src/parse.c)."""
+    """Return the mapping whose keys are parts of names, as rcl reads it."""
+    # Also a list of one mapping with one key with a list (rcl_yaml_param_parser parse.c).
     if isinstance(node, yaml.MappingNode):
         return node
     only = node.value[0] if isinstance(node, yaml.SequenceNode) and len(node.value) == 1 else None

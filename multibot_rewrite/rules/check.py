@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A system, alone or with its plan -> findings, in the order of the codes; and robots in several
-ROS domains: a plan and what was seen in each of them.
+"""A system, alone or with its plan or its domains -> findings, in the order of the codes.
 
-Where the view may be incomplete, a finding about something missing is *inconclusive*. Each domain
-is compared with its part of the plan, or against the whole of one for robots without names: who is
-in another one is never met. Robots are compared wherever they are."""
+Where the view may be incomplete, a finding about something missing is *inconclusive*. Each ROS
+domain is compared with its part of the plan, or with the whole of one for robots without names:
+nodes of different domains never share a topic. Robots are compared wherever they are."""
 
 from __future__ import annotations
 
@@ -54,8 +53,7 @@ _TIMED = {likes.less_than_another_robot.code, clocks.stamp_of_another_time.code}
 
 
 def judge(seen: Index) -> list[Finding]:
-    """Return the findings about a system and its differences from its plan, the likeliest cause
-    first. It is empty if nothing is wrong."""
+    """Return the findings about a system and its differences from its plan, the likely causes first."""
     with gc_paused():
         plan = seen.expected
         if plan is None:
@@ -71,13 +69,15 @@ def judge(seen: Index) -> list[Finding]:
 
 
 def _rules(planned: bool) -> Iterator[Rule]:
+    """Return the rules that only a plan can answer, or the others."""
     return (it for it in RULES.values() if it.options["planned"] is planned)
 
 
 def _judged_findings(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
+    """Return what rules find, without what another of their findings explains."""
     with gc_paused():
         found = [*_found_by(rules, seen)]
-        return differing.unexplained(_of_localizers(seen, _of_readers(found)))
+        return differing.unexplained(_without_unjoined_maps(seen, _without_their_senders(found)))
 
 
 def _found_by(rules: Iterable[Rule], seen: Index) -> Iterator[Finding]:
@@ -87,7 +87,7 @@ def _found_by(rules: Iterable[Rule], seen: Index) -> Iterator[Finding]:
             yield from rule.check(seen if rule.code in ABSENCE else seen.sure)
 
 
-def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:
+def _without_unjoined_maps(seen: Index, found: Sequence[Finding]) -> list[Finding]:
     """Return the findings without unknown frames `map` of robots that nothing joins with the map."""
     lost = {it.robot for it in found if it.code == localized.map_not_joined.code}
     unknown = frame_ids.frame_id_unknown.code
@@ -100,7 +100,7 @@ def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:
     ]
 
 
-def _of_readers(found: Sequence[Finding]) -> list[Finding]:
+def _without_their_senders(found: Sequence[Finding]) -> list[Finding]:
     """Return the findings without those about a sender whose reader has one for the same names."""
     missed = {frozenset(it.names) for it in found if it.code == topic_names_miss.code}
     sender = command_to_nobody.code
@@ -109,15 +109,16 @@ def _of_readers(found: Sequence[Finding]) -> list[Finding]:
 
 def contradictions(seen: Index) -> list[Finding]:
     """Return the faults that ends, senders or nodes have with each other, whatever else runs."""
-    return _absent(seen, absent=False)
+    return _findings_by_absence(seen, absent=False)
 
 
 def absences(seen: Index) -> list[Finding]:
     """Return the findings about what is missing, as far as the system is known."""
-    return _absent(seen, absent=True)
+    return _findings_by_absence(seen, absent=True)
 
 
-def _absent(seen: Index, absent: bool) -> list[Finding]:
+def _findings_by_absence(seen: Index, absent: bool) -> list[Finding]:
+    """Return the findings about what is missing, or the others."""
     found = _judged_findings(
         seen, (it for it in _rules(planned=False) if (it.code in ABSENCE) is absent)
     )
@@ -133,7 +134,8 @@ def check(
     messages: Mapping[str, int] = NO_COUNTS,
     before: System | None = None,
 ) -> list[Finding]:
-    """Return what is wrong with a system or differs from its plan; empty if nothing does.
+    """Return what is wrong with a system or differs from its plan.
+
     ``messages`` has the counted messages of each topic; ``before`` is the snapshot that the plan
     was made from, if any."""
     _, seen = side_by_side(plan, graph, messages, before)
@@ -148,15 +150,14 @@ def side_by_side(
 ) -> tuple[Index, Index]:
     """Return the indexes of a plan and of a system, with run-time names written alike in both."""
     there = _with_patterns(plan, graph)
-    fitting = _with_names(plan, there)
+    fitting = _with_running_names(plan, there)
     by_plan = index(fitting, whose_by_plan(fitting))
     edges = without_bridged(fitting, there.edges)
     return by_plan, beside(by_plan, there._replace(edges=edges), messages, before)
 
 
 def _with_patterns(plan: System, graph: System) -> System:
-    """Return the graph, with a pattern of the plan in place of each node name that fits it. Two
-    nodes of one process that a pattern fits are one node of the plan."""
+    """Return the graph, with a pattern of the plan in place of each node name that fits it."""
     patterns = {it.name: _compiled_pattern(it.name) for it in plan.nodes if ANY in it.name}
     if not patterns:
         return graph
@@ -174,9 +175,8 @@ def _with_patterns(plan: System, graph: System) -> System:
     )
 
 
-def _with_names(plan: System, graph: System) -> System:
-    """Return the plan, with what runs in place of each pattern of an end's name; a pattern that
-    nothing fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
+def _with_running_names(plan: System, graph: System) -> System:
+    """Return the plan, with the running names in place of the patterns of its ends."""
     if not any(ANY in it.name for it in plan.ends):
         return plan
     by_node = lists_by_key((end.node, end) for end in graph.ends)
@@ -199,8 +199,7 @@ def _compiled_pattern(pattern: str) -> re.Pattern[str]:
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
-    """Return the findings; in an incomplete view those about missing things become inconclusive.
-    Clocks that a node has by its parameters are known there, too."""
+    """Return the findings; in an incomplete view those about missing things become inconclusive."""
     reasons = {it.code for it in unseen(graph)}
     if not reasons:
         return found
@@ -243,14 +242,14 @@ def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
 
 
 def _without_bridges(system: System, plan: System) -> System:
-    own = _bridges(plan)
+    own = _domain_bridges(plan)
     return system._replace(
         nodes=tuple(it for it in system.nodes if it.name not in own),
         ends=tuple(it for it in system.ends if it.node not in own),
     )
 
 
-def _bridges(plan: System) -> set[str]:
+def _domain_bridges(plan: System) -> set[str]:
     return {it.name for it in plan.nodes if it.node_set == DOMAIN_BRIDGE}
 
 
@@ -265,7 +264,7 @@ def _with_domain(it: Finding, number: int, plan: System, seen: Mapping[int, Syst
         and other != number
         and wanted & {own.name for own in view.nodes}
     ]
-    said = _of_bridge(in_domain(it, number), plan)
+    said = _with_bridge_hint(in_domain(it, number), plan)
     if not elsewhere:
         return said
     hint = f"it runs in domain {elsewhere[0]}: start it with ROS_DOMAIN_ID={number}"
@@ -277,9 +276,9 @@ def in_domain(it: Finding, number: int) -> Finding:
     return it._replace(message=f"{it.message}, in domain {number}")
 
 
-def _of_bridge(it: Finding, plan: System) -> Finding:
+def _with_bridge_hint(it: Finding, plan: System) -> Finding:
     """Return a finding of a domain_bridge: if it is missing, or a topic in its file, as that."""
-    if it.node not in _bridges(plan):
+    if it.node not in _domain_bridges(plan):
         return it
     if it.code == missing_endpoint.code:
         hint = f"the file of {DOMAIN_BRIDGE} has no such topic: build the fleet again"

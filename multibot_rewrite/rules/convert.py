@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Edits that make a description one of another version of URDF, where it means the same in both; a
-``<capsule>`` as a cylinder and two spheres: the same set of points.
+"""Edits that make a description one of another version of URDF, where it means the same in both.
 
-The ``length`` is that of the cylinder alone (urdfdom's README, version 1.1). The cylinder stays
-where the capsule is; the spheres go to the end of the link, so that the numbers of other collisions
-stay.
-"""
+A ``<capsule>`` becomes a cylinder and two spheres: the same set of points. The ``length`` is that
+of the cylinder alone (urdfdom's README, version 1.1). The cylinder stays where the capsule is; the
+spheres go to the end of the link, so that the numbers of other collisions stay."""
 
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -58,7 +56,7 @@ def end_tag_of(text: Spanned, element: _Element) -> int:
 
 def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -> Edit | None:
     """Return the edit that gives an attribute another name and value; None where it is not found."""
-    if slot := _slot(text, element, name):
+    if slot := _attribute_span(text, element, name):
         quote = text.source[slot[0] - 1 : slot[0]].decode()
         begin = text.source.rindex(name.encode(), 0, slot[0])
         return Edit(begin, slot[1], f"{new}={quote}{value}".encode(), None)
@@ -67,7 +65,7 @@ def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -
 
 def removed(text: Spanned, element: _Element, name: str) -> Edit | None:
     """Return the edit that removes an attribute with the white space before it; None without one."""
-    if slot := _slot(text, element, name):
+    if slot := _attribute_span(text, element, name):
         before = len(text.source[: text.source.rindex(name.encode(), 0, slot[0])].rstrip())
         return Edit(before, slot[1] + 1, b"", None)
     return None
@@ -79,11 +77,11 @@ def revalued(text: Spanned, element: _Element, name: str, value: str) -> Edit | 
     if element.get(name) is None:
         tag = text.source[start : start + 1 + len(str(element.tag))]
         return Edit(start, start + len(tag), tag + f' {name}="{value}"'.encode(), None)
-    slot = _slot(text, element, name)
+    slot = _attribute_span(text, element, name)
     return None if slot is None else Edit(*slot, value.encode(), None)
 
 
-def _slot(text: Spanned, element: _Element, name: str) -> tuple[int, int] | None:
+def _attribute_span(text: Spanned, element: _Element, name: str) -> tuple[int, int] | None:
     return attribute_slot(text.source, text.starts[element], name, element.get(name, ""))
 
 
@@ -152,6 +150,7 @@ def lowered(text: Spanned) -> tuple[Edit, ...]:
 
 
 def _is_readable(origin: _Element) -> bool:
+    """Return whether an origin has one rotation, and that can be read."""
     turn = poses.quaternion(origin)
     alone = origin.get("rpy") is None and poses.pose_of(origin) is not None
     return alone and turn is not None and 0 < poses.length_of(turn) < float("inf")
@@ -183,11 +182,11 @@ def capsule_edits(text: Spanned, link: _Element) -> tuple[Edit, ...]:
     found = capsules(link)
     if not found or not all(_is_plain(text, link, *it) for it in found):
         return ()
-    edits = [edit for shape, _ in found for edit in _cylinder(text, shape)]
-    spheres = [it for shape, holder in found for it in _spheres(text, shape, holder)]
+    edits = [edit for shape, _ in found for edit in _cylinder_edits(text, shape)]
+    spheres = [it for shape, holder in found for it in _sphere_texts(text, shape, holder)]
     # The spheres before the end tag of the link, a line each where the link's end has its own.
     at = end_tag_of(text, link)
-    margin, inner = map(partial(_margin, text.source), (at, text.starts[found[0][1]]))
+    margin, inner = map(partial(_indentation, text.source), (at, text.starts[found[0][1]]))
     if margin is None:
         lines = b"".join(spheres)
     else:
@@ -211,22 +210,22 @@ def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) 
         return False
     sizes = [number(shape.get(it)) for it in ("length", "radius")]
     known = {it.tag for it in holder.iterchildren("*")} <= _PLAIN
-    return known and all(it is not None and it > 0 for it in sizes) and _pose(holder) is not None
+    return known and all(it is not None and it > 0 for it in sizes) and _pose_of(holder) is not None
 
 
-def _pose(holder: _Element) -> poses.Pose | None:
+def _pose_of(holder: _Element) -> poses.Pose | None:
     return poses.pose_of(next(holder.iterchildren("origin"), None))
 
 
-def _cylinder(text: Spanned, shape: _Element) -> Iterator[Edit]:
+def _cylinder_edits(text: Spanned, shape: _Element) -> Iterator[Edit]:
     start = text.starts[shape] + 1
     yield Edit(start, start + len(CAPSULE), CYLINDER, None)
     if closed := _CLOSED.match(text.source, tag_end(text.source, start - 1)):
         yield Edit(closed.start(1), closed.end(1), CYLINDER, None)
 
 
-def _spheres(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
-    pose, length = _pose(holder), number(shape.get("length"))
+def _sphere_texts(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
+    pose, length = _pose_of(holder), number(shape.get("length"))
     spans = ((text.starts[it], end_of(text, it)) for it in holder.iterchildren("material"))
     material = b"".join(text.source[start:end] for start, end in spans)
     radius = f'<geometry><sphere radius="{shape.get("radius")}"/></geometry>'
@@ -236,7 +235,7 @@ def _spheres(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes
         yield head + material + f"</{holder.tag}>".encode()
 
 
-def _margin(source: bytes, at: int) -> bytes | None:
+def _indentation(source: bytes, at: int) -> bytes | None:
     """Return the white space before an offset in its line; None if there is anything else before it."""
     line = source[source.rfind(b"\n", 0, at) + 1 : at]
     return None if line.strip() or b"\n" not in source[:at] else line

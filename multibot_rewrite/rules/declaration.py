@@ -1,23 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a rule about a system, a launch or a file is declared, on the function that finds it, and how
-it says where: at the place of a record, and of what is next to it."""
+"""How a rule is declared on the function that finds it, and how it says where a fault is."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
-from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, declare, rule
-from multibot_rewrite.system.records import NOWHERE, Place
 
 if TYPE_CHECKING:
     import yaml
 
     from multibot_rewrite.related_files.named_file import NamedFile
     from multibot_rewrite.system.index import Index
+    from multibot_rewrite.system.records import Place
 
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
@@ -42,14 +41,15 @@ def system_rule(
     all_ends: bool = False,
     meant: tuple[str, ...] = (),
 ) -> Callable[[_Check], Rule]:
-    """Make a function a rule about any system: it gets an ``Index``, may ask what is ``expected`` in
-    it, and yields what its own ``finding`` makes.
+    """Return a decorator that makes a function a rule about any system.
+
+    The function gets an ``Index``, may ask what is ``expected`` in it, and yields what its own
+    ``finding`` makes.
 
     ``absence``: the rule finds that something is missing, which an incomplete view cannot prove.
     ``all_ends``: a finding names one node, and is about all nodes that use the names. ``meant`` are
     roles: where all who have them at the names of a finding are planned to, it is no fault. The
-    examples are lines of ``tests/support/graph_examples.py`` that begin with ``running:``.
-    """
+    examples are lines of ``tests/support/graph_examples.py`` that begin with ``running:``."""
     options = system_options(absence, drawn, all_ends, meant)
     return lambda check: declare(code, name, level, check, formats=(SYSTEM,), options=options)
 
@@ -71,12 +71,11 @@ def planned_rule(
     drawn: Drawn = "",
     nodes: bool = True,
 ) -> Callable[[_Compare], Rule]:
-    """Make a function a rule that only a plan can answer: it gets the ``Index`` of the plan and of
-    what is seen, and is not asked without a plan.
+    """Return a decorator that makes a function a rule which only a plan can answer.
 
-    ``nodes``: it asks which nodes run, which a recording does not know. The rest is as for
-    ``system_rule``.
-    """
+    The function gets the ``Index`` of the plan and of what is seen, and is not asked without a
+    plan. ``nodes``: it asks which nodes run, which a recording does not know. The rest is as for
+    ``system_rule``."""
     options = {**system_options(absence, drawn), "planned": True, "nodes": nodes}
 
     def declared(compare: _Compare) -> Rule:
@@ -97,8 +96,7 @@ def launch_rule(
 
 
 def of_robots(find: _FileCheck) -> _FileCheck:
-    """Return a rule from a check of what several robots get: it skips a file that is for no certain
-    robot if no robots are named."""
+    """Return the check, limited to files of certain robots unless robots are named."""
 
     @wraps(find)
     def found(file: NamedFile) -> Iterator[Finding]:
@@ -109,11 +107,11 @@ def of_robots(find: _FileCheck) -> _FileCheck:
 
 
 def rules_in(package: str, *apart: str) -> list[Rule]:
-    """Return the rules in the modules of a package below this one, without the modules ``apart``. A
-    module is its own package; a rule that several modules have is there once."""
+    """Return the rules in the modules of a package below this one, each once, without ``apart``."""
     name = f"{__package__}.{package}"
     whole = import_module(name)
-    inside = (it.name for it in iter_modules(getattr(whole, "__path__", ())))
+    files = (it for path in getattr(whole, "__path__", ()) for it in sorted(os.listdir(path)))
+    inside = (it[:-3] for it in files if it.endswith(".py") and it != "__init__.py")
     modules = [import_module(f"{name}.{it}") for it in inside if it not in apart]
     found = (it for one in (whole, *modules) for it in vars(one).values() if isinstance(it, Rule))
     return list({id(it): it for it in found}.values())
@@ -186,18 +184,19 @@ def at(rule: Rule, place: Place, message: str, hint: str, **more: Any) -> Findin
     return rule.finding(message, hint, **_place_fields(place), **more)
 
 
-def where(records: Iterable[Placed]) -> dict[str, Any]:
+def last_place(records: Iterable[Placed]) -> dict[str, Any]:
     """Return the place fields of a finding, at the last record that has a place; empty without one."""
-    places = [it.place for it in records if it.place != NOWHERE]
+    places = [it.place for it in records if it.place.file]
     return _place_fields(places[-1]) if places else {}
 
 
 def _place_fields(place: Place) -> dict[str, Any]:
+    """Return the fields of a finding for a place, the column 1 if it is unknown."""
     return {**place._asdict(), "column": place.column or 1}
 
 
-def see(records: Iterable[Placed]) -> str:
+def see_all(records: Iterable[Placed]) -> str:
     """Return ``; see FILE:LINE and FILE:LINE``: the places of all but the last one."""
-    places = dict.fromkeys(str(it.place) for it in records if it.place != NOWHERE)
+    places = dict.fromkeys(str(it.place) for it in records if it.place.file)
     others = [*places][:-1]
     return f"; see {' and '.join(others)}" if others else ""

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Findings -> one for each cause, the likeliest cause first: what another finding explains is folded
-below it, and what several nodes do alike, or one node does often, is one line."""
+"""Findings -> one for each cause, the likeliest first, with its consequences and repetitions."""
 
 from __future__ import annotations
 
@@ -40,7 +39,7 @@ def has_to_give(seen: Index, it: Finding) -> bool:
     return any(end.node == it.node and end.role in _GIVES for end in planned)
 
 
-def _described(seen: Index, it: Finding) -> Iterable[str]:
+def _robots_of_description(seen: Index, it: Finding) -> Iterable[str]:
     """Return the robots of a description, by its topic and by its links."""
     own = (one for one in seen.system.descriptions if one.topic in it.names)
     return {it.robot, *(seen.frame_robot(link) for one in own for link in one.links)} - {""}
@@ -78,8 +77,9 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "planned names": lambda seen, it: (seen.plain(end.name) for end in _planned_ends(seen, it)),
     "given names": lambda seen, it: (x.name for x in _planned_ends(seen, it) if x.role in _GIVES),
     "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
-    "described robots": _described,
+    "described robots": _robots_of_description,
     "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
+    "a tf topic": lambda seen, it: ("" for x in _ends(seen, it.names) if x.type == TF),
     "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),
     "sent tf": lambda seen, it: (
         "" for x in _planned_ends(seen, it) if x.type == TF and x.role == PUBLISHES
@@ -87,7 +87,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
 }
 
 
-def _keys(seen: Index, it: Finding, common: str, side: int) -> Set[tuple[str, ...]]:
+def _facet_values(seen: Index, it: Finding, common: str, side: int) -> Set[tuple[str, ...]]:
     """Return what a cause (side 0) or what comes of it (-1) has of ``robot and server = node``."""
     facets = (one.split(" = ")[side] for one in common.split(" and "))
     return {*product(*(_FACETS[facet](seen, it) for facet in facets))}
@@ -120,11 +120,11 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
     for code, codes, common in _EXPLAINS if len(found) > 1 else ():
         causes = [it for it in by_code[code] if it not in gone]
         others = [it for other in codes.split() for it in by_code[other] if it not in gone]
-        pairs = ((key, it) for it in causes for key in _keys(seen, found[it], common, 0))
+        pairs = ((key, it) for it in causes for key in _facet_values(seen, found[it], common, 0))
         by_key = lists_by_key(pairs if others else ())
         for at in others if by_key else ():
             # Each robot's cause has it, so that the robots' findings stay one.
-            keys = _keys(seen, found[at], common, -1)
+            keys = _facet_values(seen, found[at], common, -1)
             for cause in {it for key in keys for it in by_key[key]}:
                 below[cause].append(at)
                 gone.add(at)
@@ -133,7 +133,7 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
         for at, it in enumerate(found)
         if at not in gone
     ]
-    return _without_unplanned(seen, _alike(left))
+    return _without_unplanned(seen, _merged(left))
 
 
 def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
@@ -159,7 +159,7 @@ def of_one_target(rules: Iterable[Remap]) -> tuple[Remap, ...]:
     return tuple(it for it in each if targets[it.node, it.old] == 1)
 
 
-def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
+def _merged(found: Iterable[Finding]) -> Iterator[Finding]:
     """Yield the findings; those that several nodes share become one, at the first and worst."""
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for it in found:
@@ -172,10 +172,11 @@ def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
         if len(own) == 1 or len(own) < _ONE_OF[code][1]:
             yield from own
         else:
-            yield _one_of(own, code)
+            yield _merged_finding(own, code)
 
 
-def _one_of(own: Sequence[Finding], code: str) -> Finding:
+def _merged_finding(own: Sequence[Finding], code: str) -> Finding:
+    """Return one finding for several of a code that differ in the node or the name."""
     first = min(own, key=lambda it: _BAD.index(it.level))
     others = [it for it in own if it is not first]
     if _ONE_OF[code][0] == "names" or code == "MG101":
@@ -220,10 +221,11 @@ def is_about_a_clock(seen: Index, it: Finding) -> bool:
 
 def in_order(seen: Index, found: Iterable[Finding]) -> list[Finding]:
     """Return the findings by their kind of cause, then by level; notes come last."""
-    return sorted(found, key=lambda it: (it.level == NOTE, *_place(seen, it), it.code))
+    return sorted(found, key=lambda it: (it.level == NOTE, *_rank(seen, it), it.code))
 
 
-def _place(seen: Index, it: Finding) -> tuple[int, int]:
+def _rank(seen: Index, it: Finding) -> tuple[int, int]:
+    """Return the sort key of a finding: its kind of cause, and its level."""
     kinds = (at for at, codes in enumerate(_ORDER) if it.code.startswith(codes))
     rank = 0 if is_about_a_clock(seen, it) else next(kinds, len(_ORDER))
     return rank, _BAD.index(it.level)

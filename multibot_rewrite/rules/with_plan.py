@@ -37,7 +37,8 @@ def one_for_a_cause(
     rules: Mapping[str, Rule],
     in_doubt: bool,
 ) -> list[Finding]:
-    """Return the findings about a system and those that only its plan shows, one for each cause.
+    """Return the findings of a system and its plan, one for each cause.
+
     ``in_doubt``: the system may have more than was seen."""
     left = [it for it in found if not _is_meant(plan, seen, it, rules[it.code])]
     # What is there counts before what is missing, then the first.
@@ -47,7 +48,7 @@ def one_for_a_cause(
     causes: dict[int, list[Finding]] = defaultdict(list)
     others: list[Finding] = []
     for it in by_plan:
-        keys = [*_same(seen, it, rules)]
+        keys = [*_same_causes(seen, it, rules)]
         same = [them[key] for them in places for key in keys if key in them]
         (causes[same[0]] if same else others).append(it)
     said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
@@ -66,11 +67,18 @@ def one_for_a_cause(
     ]
 
 
+def subject_of(plan: Index, it: Finding) -> tuple[str, ...]:
+    """Return the code, and the names without those of robots or the message; equal for what is found
+    in the sources of a plan and in what runs of it."""
+    return (it.code, *map(plan.plain, it.names)) if it.names else (it.code, it.message)
+
+
 def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:
     return bool(rules[it.code].options["absence"])
 
 
 def _subjects(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
+    """Yield what a finding is about: its node, its robot, and its names."""
     if it.code in BETWEEN_ROBOTS:
         return
     yield it.node, ""
@@ -86,11 +94,11 @@ def _is_of_an_end(it: Finding, rules: Mapping[str, Rule]) -> bool:
     return it.code == missing_endpoint.code or not rules[it.code].options["planned"]
 
 
-def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
+def _same_causes(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
     """Yield the keys of findings that have the same cause as one by the plan."""
     if it.code in (sender_not_planned.code, frame_without_robot_name.code):
         yield from ((whose, name) for name in it.names for whose in (it.node, it.robot, ""))
-    elif _is_of_an_end(it, rules) and _is_there(it):
+    elif _is_of_an_end(it, rules) and _has_instead(it):
         used = it.names[-1]
         is_tf = any(end.type == TF for end in ends_of(seen, used))
         about = tree_topic(used) if is_tf else used
@@ -103,7 +111,7 @@ def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_Abou
         yield from ((whose, it.names[0]) for whose in lacks)
 
 
-def _is_there(it: Finding) -> bool:
+def _has_instead(it: Finding) -> bool:
     """Return whether the node has something in place of what it lacks."""
     return len(it.names) > 1 or it.code != missing_endpoint.code
 
@@ -115,7 +123,7 @@ def _with_cause(
     place = by_plan[0]
     if in_doubt and _is_absence(it, rules) and not _is_absence(place, rules):
         return place
-    hint, remaps = _hint(it, by_plan, rules)
+    hint, remaps = _hint_of_plan(it, by_plan, rules)
     level = ERROR if any(one.level == ERROR for one in by_plan) else it.level
     found = it._replace(hint=hint, level=level, remaps=remaps)
     if not place.file:
@@ -123,14 +131,14 @@ def _with_cause(
     return found._replace(file=place.file, line=place.line, column=place.column)
 
 
-def _hint(
+def _hint_of_plan(
     it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]
 ) -> tuple[str, tuple[Remap, ...]]:
     """Return the plan's hint with the remap rules that it names, those of all nodes named."""
     first, *others = by_plan
     if not _is_of_an_end(first, rules):
         return first.hint, first.remaps
-    if not _is_there(first):
+    if not _has_instead(first):
         return it.hint, it.remaps
     who = "it" if first.node == it.node else first.node
     more = unique(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much of what is there a system holds: which every verdict reports."""
+"""How much of what exists a system has, which every verdict reports."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -23,10 +23,10 @@ LAUNCHED, SEEN = "launched", "seen"
 
 
 class Covered(NamedTuple):
-    """The nodes of a robot (or those for all robots, with an empty name): how many there are, of how
-    many it is ``known`` what they do, how many are in the graph (``seen``), and how many of these
-    were ``silent``: asked for their state, and no answer came. Of ``partly``
-    many of the known ones their source does not tell all."""
+    """The nodes of a robot, or with an empty name those for all robots, as counts.
+
+    Of ``known`` ones it is known what they do, of ``partly`` many of these not all. ``seen`` are in
+    the graph; ``silent`` ones of these were asked for their state and did not answer."""
 
     robot: str
     nodes: int
@@ -59,7 +59,7 @@ class Coverage(NamedTuple):
 
     @property
     def total(self) -> Covered:
-        """The sums over all robots."""
+        """The counts of all robots together."""
         columns = zip(*(it[1:] for it in self.robots), strict=True)
         return Covered("", *map(sum, columns)) if self.robots else Covered("", 0, 0, 0, 0)
 
@@ -82,19 +82,19 @@ class Coverage(NamedTuple):
             head.append(f"{least}{plural(counts[-1], 'node')}{' each' * (len(robots) > 1)}")
         if shared:
             head.append(f"{shared} for all" if robots else plural(shared, "node"))
-        details = ", ".join(_details(self)) if total.nodes else ""
+        details = ", ".join(_details_in_words(self)) if total.nodes else ""
         return f"{', '.join(head)}{': ' * bool(details)}{details}"
 
     def as_value(self) -> Mapping[str, object]:
         """Return the coverage as JSON has it; null for what is not said."""
-        rows = [{"robot": it.robot, **_row(self, it)} for it in self.robots]
+        rows = [{"robot": it.robot, **_row_as_value(self, it)} for it in self.robots]
         more = {"unread": self.unread, "processes": self.processes}
-        total = {**_row(self, self.total), "incomplete": self.incomplete, **more}
+        total = {**_row_as_value(self, self.total), "incomplete": self.incomplete, **more}
         return {**total, "robots": rows, "text": self.in_words}
 
 
 def coverage(system: System, graph: System | None = None) -> Coverage:
-    """Return how much a system holds, and how much of it is in a graph that it is compared with."""
+    """Return how much a system has of its nodes, and how much of that is in a graph."""
     told = bool(system.layout) or _is_launched(system)
     compared = "" if graph is None else LAUNCHED if _is_launched(graph) else SEEN
     ends = {it.node for it in system.ends if it.name not in OF_EVERY_NODE}
@@ -125,17 +125,18 @@ def _is_launched(system: System) -> bool:
     return not system.layout and any(it.place != NOWHERE for it in system.nodes)
 
 
-def _details(held: Coverage) -> Iterator[str]:
+def _details_in_words(held: Coverage) -> Iterator[str]:
+    """Yield how many nodes are known, seen and silent, in words."""
     total = held.total
     if held.told and not total.unknown:
-        yield f"all known{_in_part(total)}"
+        yield f"all known{_partly_known_in_words(total)}"
     elif held.told:
         alike = len({it[1:3] for it in held.robots}) == 1
         shown = held.robots[0] if alike else total
         whose = (f"{it.robot or 'for all'} {it.unknown}" for it in held.robots if it.unknown)
         where = "" if alike else f" ({shorten(whose, SEVERAL)})"
         verb = "it is" if shown.unknown == 1 else "they are"
-        known = f"{shown.known} known{_in_part(shown)}"
+        known = f"{shown.known} known{_partly_known_in_words(shown)}"
         yield f"{known}, {shown.unknown} started as {verb}{where}"
     if held.compared:
         count = "all" if total.seen == total.nodes else f"{total.seen} of {total.nodes}"
@@ -149,11 +150,11 @@ def _details(held: Coverage) -> Iterator[str]:
         yield f"{plural(held.unread, 'part')} of launch files not read"
 
 
-def _in_part(shown: Covered) -> str:
+def _partly_known_in_words(shown: Covered) -> str:
     return f" ({shown.partly} in part)" if shown.partly else ""
 
 
-def _row(held: Coverage, row: Covered) -> Mapping[str, object]:
+def _row_as_value(held: Coverage, row: Covered) -> Mapping[str, object]:
     told, compared, asked = held.told, bool(held.compared), held.compared == SEEN
     return {
         "nodes": row.nodes,

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plan whose robots are in several ROS domains -> the plan of each: nodes of two domains never meet,
-so what has one name in two of them is no clash. What was seen of them -> one view. Pure."""
+"""A plan of several ROS domains -> the plan of each; what was seen of them -> one view. Pure."""
 
 from __future__ import annotations
 
@@ -31,17 +30,17 @@ def domain_of(plan: System) -> dict[str, int]:
 
 
 def by_domain(plan: System) -> dict[int, System]:
-    """Return the plan of each domain in which a node has to run, without what is open in the plan;
-    empty for a plan of one domain."""
+    """Return the plan, without its gaps, of each domain with nodes; empty for a plan of one domain."""
     numbers = domain_of(plan)
     own = {it.name: numbers[it.robot] for it in plan.nodes} if numbers else {}
     return {it: _of_domain(plan, numbers, own, it) for it in sorted({*own.values()})}
 
 
 def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
-    """Return one view of nodes in several domains, taken apart: a node is in the domain that the
-    plan has for it, else in that of its robot by its name, or by those of all its ends; any other
-    one in that of all robots, or in the first one if nothing is planned in that."""
+    """Return a view of nodes in several domains as one view of each domain.
+
+    A node is in the domain that the plan has for it, in that of its robot, by its name or all its
+    ends, or in that of all robots; if nothing is planned there, in the first one."""
     numbers, robot = domain_of(plan), whose_by_plan(plan).robot
     planned = {it.name: it.robot for it in plan.nodes}
     in_use = {numbers[it] for it in planned.values()}
@@ -54,10 +53,10 @@ def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
         return number if number in in_use else min(in_use)
 
     own = {it.name: domain(it.name) for it in seen.nodes}
-    return {at: _of_nodes(seen, own, at) for at in sorted(in_use)}
+    return {at: _part_of_domain(seen, own, at) for at in sorted(in_use)}
 
 
-def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:
+def _part_of_domain(system: System, own: Mapping[str, int], at: int) -> System:
     """Return the part of a system that nodes of a domain have; a transform of several is in each."""
     nodes = {it for it, number in own.items() if number == at}
     ends = tuple(it for it in system.ends if it.node in nodes)
@@ -81,7 +80,7 @@ def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:
 
 
 def _of_domain(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
-    part, robot = _of_nodes(plan, own, at), whose_by_plan(plan).robot
+    part, robot = _part_of_domain(plan, own, at), whose_by_plan(plan).robot
     nodes = {it.name for it in part.nodes}
     return part._replace(
         edges=tuple(it for it in plan.edges if nodes.issuperset(it.publishers)),
@@ -93,8 +92,7 @@ def _of_domain(plan: System, numbers: Mapping[str, int], own: Mapping[str, int],
 
 
 def side_by_side(seen: Mapping[int, System]) -> System:
-    """Return the views of all domains as one, to be shown or to compare robots; findings name the
-    domain if there are several."""
+    """Return the views of all domains as one, in which limitations name their domain."""
     views = tuple(seen.values())
     if len(views) == 1:
         return views[0]
@@ -124,7 +122,7 @@ def named(view: System, domain: int) -> System:
 
 
 def unnamed(it: Finding) -> Finding:
-    """Return a finding about such a view in the names that run: ``/amcl of domain 11``."""
+    """Return a finding of ``named`` views in the names that run: ``/amcl of domain 11``."""
     return it._replace(
         message=_with_domain_last(it.message),
         hint=_with_domain_last(it.hint),

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The environment variables for discovery, how far a snapshot reached (which machines were seen,
-how to observe from others), and whether a view of the graph is complete. Pure.
+"""How discovery is set, how far a snapshot reached, and whether a view of the graph is whole. Pure.
 
 Sources: rcl ``domain_id.c``, ``discovery_options.c``; rmw_fastrtps ``participant.cpp`` (32 peers
 on a machine under LOCALHOST, else Fast DDS's own 4); the ROS 2 domain id page (0 to 232).
 
-"Not seen from here" is "missing" only where a robot would have been seen.
-"""
+"Not seen from here" is "missing" only where a robot would have been seen."""
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -66,7 +64,7 @@ class DiscoverySettings(NamedTuple):
 
 def settings(environ: Mapping[str, str]) -> DiscoverySettings:
     """Read the variables as rcl does; raises UsageError for values at which rcl exits."""
-    domain = _domain(environ.get("ROS_DOMAIN_ID", ""))
+    domain = _parse_domain_id(environ.get("ROS_DOMAIN_ID", ""))
     text = environ.get("ROS_STATIC_PEERS", "")
     peers = tuple(filter(None, text.split(";")))
     for peer in peers:
@@ -76,7 +74,7 @@ def settings(environ: Mapping[str, str]) -> DiscoverySettings:
     range_ = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "") or "SUBNET"
     return DiscoverySettings(
         domain,
-        range_ if range_ in RANGES and not _localhost_only(environ) else LOCALHOST,
+        range_ if range_ in RANGES and not _is_localhost_only(environ) else LOCALHOST,
         peers,
         environ.get("RMW_IMPLEMENTATION", ""),
         environ.get("ROS_DISCOVERY_SERVER", ""),
@@ -84,7 +82,7 @@ def settings(environ: Mapping[str, str]) -> DiscoverySettings:
     )
 
 
-def _domain(text: str) -> int:
+def _parse_domain_id(text: str) -> int:
     if not text:
         return 0
     found = _NUMBER.fullmatch(text)
@@ -102,7 +100,7 @@ def _domain(text: str) -> int:
     return domain
 
 
-def _localhost_only(environ: Mapping[str, str]) -> bool:
+def _is_localhost_only(environ: Mapping[str, str]) -> bool:
     return environ.get("ROS_LOCALHOST_ONLY", "") == "1"
 
 
@@ -110,7 +108,7 @@ def setting_caveats(environ: Mapping[str, str]) -> Iterator[Caveat]:
     """Yield problems in the variables that rcl accepts, each with what to do."""
     asked = settings(environ)
     word = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
-    if _localhost_only(environ):
+    if _is_localhost_only(environ):
         text = "ROS_LOCALHOST_ONLY=1 overrides discovery range and static peers; unset it and set"
         yield Caveat("localhost-only", False, f"{text} ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST")
     elif word and word not in RANGES:
@@ -147,8 +145,7 @@ def view_caveats(
     expected: Iterable[str] = (),
     last: Collection[str] = (),
 ) -> Iterator[Caveat]:
-    """Yield the limitations of a view, to know before something is reported as missing. ``last``
-    are the names that came or went last."""
+    """Yield the limitations of a view; ``last`` are the names that came or went last."""
     names = Counter(node.name for node in nodes)
     if settled == TIMEOUT:
         which = f" (last came or went {shorten(sorted(last), SEVERAL)})" if last else ""
@@ -157,7 +154,7 @@ def view_caveats(
     if settled == CHANGING:
         yield Caveat("not-settled", True, "the graph is still changing")
     if not nodes:
-        yield Caveat("nothing-seen", True, _nothing(asked))
+        yield Caveat("nothing-seen", True, _nothing_seen_message(asked))
     absent = sorted({*expected} - {*names, *(it.name for it in endpoints)})
     if nodes and absent:
         missing = shorten(absent, SEVERAL)
@@ -174,7 +171,7 @@ def view_caveats(
         yield Caveat("same-name", False, text)
 
 
-def _nothing(asked: DiscoverySettings) -> str:
+def _nothing_seen_message(asked: DiscoverySettings) -> str:
     """Return the message if no node was seen: where, and the likely reason."""
     where = f"domain {asked.domain}, range {asked.range}"
     remedy = "do the robots use this ROS_DOMAIN_ID and discovery range?"
@@ -193,7 +190,7 @@ def _nothing(asked: DiscoverySettings) -> str:
 
 def _cut_off(endpoints: Iterable[End], asked: DiscoverySettings) -> Iterator[Caveat]:
     """Report that Fast DDS may have found too few participants, without multicast or a server."""
-    machines = Counter(map(machine, _processes(endpoints)))
+    machines = Counter(map(machine, _process_ids(endpoints)))
     if asked.discovery_server or not machines:
         return
     most = max(machines.values())
@@ -241,8 +238,7 @@ def unfinished(
 
 
 def _without_readers(endpoints: Collection[End]) -> list[str]:
-    """Return the nodes of which only publishers are seen, where nearly all others serve parameters: the
-    writers of a node are announced apart from its readers, which are services, too."""
+    """Return nodes of which only publishers are seen yet: nearly all others serve parameters."""
     roles = sets_by_key((it.node, it.role) for it in endpoints)
     served = (it for it in endpoints if it.role == SERVES)
     serving = {it.node for it in served if it.name.endswith("/get_parameters")}
@@ -253,10 +249,10 @@ def _without_readers(endpoints: Collection[End]) -> list[str]:
 
 def participants(endpoints: Iterable[End]) -> int:
     """Return how many DDS participants the endpoints belong to."""
-    return len(_processes(endpoints))
+    return len(_process_ids(endpoints))
 
 
-def _processes(endpoints: Iterable[End]) -> set[str]:
+def _process_ids(endpoints: Iterable[End]) -> set[str]:
     return {endpoint.process for endpoint in endpoints} - {""}
 
 
@@ -271,10 +267,10 @@ def machines(graph: System) -> Machines:
 
 
 def hidden_from_here(graph: System, seen: Machines) -> bool:
-    """Return whether a robot on another machine may run unseen: nothing but one machine was
-    ``seen``. Then multicast may be lost, or the other machine keeps to itself. Under LOCALHOST
-    without peers only this machine was asked for, and a discovery server or a router knows all that
-    use it."""
+    """Return whether a robot on another machine may run unseen: nodes of one machine were seen.
+
+    Then multicast may be lost, or the other machine keeps to itself. Under LOCALHOST without peers
+    only this machine was asked for, and a discovery server or a router knows all that use it."""
     around = graph.environment
     asked_for_all = around.range not in (LOCALHOST, "OFF") or bool(around.static_peers)
     one_look = not any(it.code == "looks-merged" for it in around.caveats)

@@ -32,11 +32,9 @@ _NUMBER = lazy_compile(r"\d+")
 
 
 class GuessedRobot(NamedTuple):
-    """A robot as it shows: its name, its namespace (empty without one), its word in frames with its
-    separator: ``robot1/`` before a frame, ``/robot1`` behind it, empty without one.
+    """A robot that names show; ``before`` or ``behind`` is its word in frames, such as ``robot1/``.
 
-    ``only_frames``: topics and nodes have no word for it, whatever theirs are called.
-    """
+    Each is empty where there is none. ``only_frames``: no topic or node has a word for it."""
 
     name: str
     namespace: str
@@ -45,7 +43,7 @@ class GuessedRobot(NamedTuple):
     only_frames: bool = False
 
 
-def _of_parts(edges: Iterable[Edge]) -> set[str]:
+def _frames_of_parts(edges: Iterable[Edge]) -> set[str]:
     """Return the frames below a robot's base: an arm, a wheel, whatever its own base is called."""
     children = lists_by_key(
         (it.parent.removeprefix("/"), it.child.removeprefix("/")) for it in edges
@@ -60,28 +58,28 @@ def _of_parts(edges: Iterable[Edge]) -> set[str]:
 
 def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     """Return the robots of a graph, in the order of their names; empty where none has a name."""
-    parts = _of_parts(graph.edges)
+    parts = _frames_of_parts(graph.edges)
     lived_in = [node.name for node in graph.nodes if not is_tool(node.name)]
-    namespaces = [it for it in _namespaces(graph, lived_in) if not _is_a_part(it, parts)]
+    namespaces = [it for it in _robot_namespaces(graph, lived_in) if not _is_a_part(it, parts)]
     frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
     words = [] if namespaces else _last_words(graph)
     if not (namespaces or words):
-        namespaces = sorted(_alike(graph, lived_in, numbered=True))
+        namespaces = sorted(_alike_namespaces(graph, lived_in, numbered=True))
     if namespaces:
-        return tuple(with_frames(_named(namespaces), frames))
+        return tuple(with_frames(_robots_of_namespaces(namespaces), frames))
     if words:
         return tuple(with_frames((GuessedRobot(it, "") for it in words), frames))
     parents = sets_by_key((it.child, it.parent) for it in graph.edges)
-    return tuple(_by_frames(frames - parts, parents))
+    return tuple(_frame_robots(frames - parts, parents))
 
 
 def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
-    """Return whether a namespace's base hangs on that of a robot without a name."""
+    """Return whether a namespace's base frame is below that of a robot without a name."""
     word = namespace.rpartition("/")[2]
     return any(f"{word}{way}{base}" in parts for way in "/_" for base in BODY_FRAMES)
 
 
-def _named(namespaces: Collection[str]) -> Iterator[GuessedRobot]:
+def _robots_of_namespaces(namespaces: Collection[str]) -> Iterator[GuessedRobot]:
     """Yield the robots by their last words, or by the whole namespaces where two end alike."""
     last = [it.rpartition("/")[2] for it in namespaces]
     times = Counter(last)
@@ -89,7 +87,7 @@ def _named(namespaces: Collection[str]) -> Iterator[GuessedRobot]:
         yield GuessedRobot(word if times[word] == 1 else space.strip("/"), space)
 
 
-def _namespaces(graph: System, lived_in: Collection[str]) -> list[str]:
+def _robot_namespaces(graph: System, lived_in: Collection[str]) -> list[str]:
     """Return the namespaces of robots, in order."""
     nodes = {node.name for node in graph.nodes}
     parts = (end.name.rpartition("/") for end in graph.ends if end.kind == TOPIC)
@@ -105,16 +103,18 @@ def _namespaces(graph: System, lived_in: Collection[str]) -> list[str]:
     # What is above a robot's namespace is a group of robots.
     bodies += [
         it
-        for it in _alike(graph, lived_in)
+        for it in _alike_namespaces(graph, lived_in)
         if not any(body.startswith(f"{it}/") for body in bodies)
     ]
     outer = [it for it in bodies if not any(it.startswith(f"{other}/") for other in bodies)]
     return sorted({*outer, *_numbered_alike(outer, lived_in)})
 
 
-def _alike(graph: System, nodes: Iterable[str], numbered: bool = False) -> Iterator[str]:
-    """Yield namespaces next to each other with nodes of the same names, one of which has a topic of
-    a whole robot in each of them; with two such nodes of any kind where the namespaces are numbered."""
+def _alike_namespaces(graph: System, nodes: Iterable[str], numbered: bool = False) -> Iterator[str]:
+    """Yield namespaces next to each other that have nodes of the same names.
+
+    One such node has a topic of a whole robot in each of them; two of any kind do for namespaces
+    with numbers."""
     whole = {end.node for end in graph.ends if end.name.rpartition("/")[2] in _WHOLE}
     below: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for node in (it for it in nodes if numbered or it in whole):
@@ -163,7 +163,7 @@ def _last_words(graph: System) -> list[str]:
     )
 
 
-def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
+def _frames_above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
     """Return all frames above these."""
     todo, found = [*frames], set[str]()
     for it in todo:  # grows
@@ -173,9 +173,8 @@ def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
     return found
 
 
-def _by_frames(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Iterator[GuessedRobot]:
-    """Yield two or more words that are next to the usual names of frames in the same way, none of
-    which hangs on another: that would be a part of it."""
+def _frame_robots(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Iterator[GuessedRobot]:
+    """Yield two or more robots whose words are next to usual names of frames, and apart in the tree."""
     ways: dict[tuple[str, bool], dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for frame in frames:
         for separator in ("/", *SEPARATORS):
@@ -194,17 +193,17 @@ def _by_frames(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Iterat
 
 
 def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[str]]) -> set[str]:
-    """Return the words whose frames hang on none of another word's."""
+    """Return the words whose frames are below none of another word's."""
     owners = {frame: word for word, frames in words.items() for frame in frames}
     above = {
-        word: {owners.get(it, word) for it in _above(frames, parents)}
+        word: {owners.get(it, word) for it in _frames_above(frames, parents)}
         for word, frames in words.items()
     }
     return {word for word, found in above.items() if found <= {word}}
 
 
 def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterator[GuessedRobot]:
-    """Yield each with the way in which most frames have its name."""
+    """Yield each robot with the way in which most frames have its name."""
     times = Counter(way for frame in frames for way in _affixes(frame))
     for robot in robots:
         word = robot.namespace.rpartition("/")[2] or robot.name
@@ -215,7 +214,7 @@ def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterat
 
 
 def _affixes(frame: str) -> Iterator[tuple[str, str]]:
-    """Yield the beginnings and ends of a frame up to each separator, with it."""
+    """Yield each beginning and each end of a frame that a separator bounds, with it."""
     for at, it in enumerate(frame):
         if it == "/" or it in SEPARATORS:
             yield frame[: at + 1], ""
@@ -223,12 +222,12 @@ def _affixes(frame: str) -> Iterator[tuple[str, str]]:
 
 
 def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
-    """Return whose each name is, by how the robots show."""
+    """Return whose each name is, by the robots that were guessed."""
     known = tuple(robots)
     there = [it for it in known if not it.only_frames]
     by_word = {it.namespace or it.name: it for it in there}
     by_word |= {it.name: it for it in there}
-    of_name = cache(lambda name: _whose(name, by_word))
+    of_name = cache(lambda name: _robot_of_name(name, by_word))
     by_way: dict[tuple[str, str], int] = {}
     for at, it in enumerate(known):
         for way in ((it.before, ""), ("", it.behind)):
@@ -255,9 +254,8 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
     )
 
 
-def _whose(name: str, robots: Mapping[str, GuessedRobot]) -> GuessedRobot | None:
-    """Return a name's robot by namespace, by the last word, or by a word of a node's or topic's
-    name in the root. ``robots`` are by namespace and by name."""
+def _robot_of_name(name: str, robots: Mapping[str, GuessedRobot]) -> GuessedRobot | None:
+    """Return a name's robot by namespace, by the last word, or in the root by any word of a name."""
     above = name
     while above:
         if above in robots:
@@ -277,6 +275,7 @@ def _words_in(name: str) -> Iterator[str]:
 
 
 def _plain_name(name: str, robot: GuessedRobot | None) -> str:
+    """Return a name without the robot's namespace or name."""
     if robot is None:
         return name
     if robot.namespace and name.startswith(f"{robot.namespace}/"):

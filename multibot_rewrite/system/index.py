@@ -83,8 +83,7 @@ class Sent(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What is known of a system besides what it shows: how many ``messages`` came on each topic in
-    ``seconds``, where they were counted; how it was ``before``, where its plan is an earlier look."""
+    """What else is known: ``messages`` in ``seconds``; the system ``before``, if that is the plan."""
 
     messages: Mapping[str, int] = NO_COUNTS
     seconds: float = 0.0
@@ -95,7 +94,7 @@ NOTHING_KNOWN = Known()
 
 
 def once(make: _Look) -> _Look:
-    """Decorate a look-up: it is made when first asked for, and kept by the last index asked."""
+    """Decorate a property: its value is made when first asked for, the last index asked keeps it."""
 
     @wraps(make)
     def found(*indices: Any) -> Any:
@@ -131,7 +130,7 @@ class Index(NamedTuple):
     @property
     @once
     def sure(self) -> "Index":
-        """The same without the ends that only may be there."""
+        """The index without the ends that exist only on a condition."""
         system = surely(self.system)
         return self if system is self.system else self._replace(system=system, memo={})
 
@@ -180,7 +179,7 @@ class Index(NamedTuple):
     @property
     @once
     def sent(self) -> Sequence[Sent]:
-        """The transforms by the nodes that send them."""
+        """The transforms that a plan has, each with the node that sends it."""
         return [
             Sent(node, it.parent, it.child) for it in self.system.edges for node in it.publishers
         ]
@@ -188,13 +187,13 @@ class Index(NamedTuple):
     @property
     @once
     def by_key(self) -> Mapping[EndKey, End]:
-        """The last end of each key, hidden ones as well."""
+        """The last end with each node, kind, role and name; hidden ones, too."""
         return {(it.node, it.kind, it.role, it.name): it for it in self.system.ends}
 
     @property
     @once
     def by_node(self) -> Mapping[str, Sequence[End]]:
-        """The ends of each node, hidden ones as well."""
+        """The ends of each node; hidden ones, too."""
         return lists_by_key((end.node, end) for end in self.system.ends)
 
     @property
@@ -258,7 +257,7 @@ class Index(NamedTuple):
 
     def of_robot(self, robot: str, kind: str, plain: str) -> Ends | None:
         """Return the ends of a robot's name, by the name without the robot's; None without."""
-        return _by_robot(self).get((robot, kind, plain))
+        return _ends_by_robot(self).get((robot, kind, plain))
 
     @property
     @once
@@ -279,7 +278,7 @@ class Index(NamedTuple):
 
     @property
     def nobody(self) -> str:
-        """Return words for no node: if others may run, for no known node."""
+        """Return ``no node``, or ``no known node`` if nodes may be missing in the view."""
         return "no known node" if incomplete(self.system) else "no node"
 
     def is_tool(self, node: str) -> bool:
@@ -334,7 +333,7 @@ def beside(
 
 
 @once
-def _by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
+def _ends_by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
     return {
         (it.robot(name), kind, it.plain(name)): ends for (kind, name), ends in it.by_name.items()
     }
@@ -369,7 +368,7 @@ def nodes_of(ends: Iterable[End]) -> tuple[str, ...]:
 
 
 def at_work(ends: Iterable[End]) -> list[End]:
-    """Return the ends of nodes that are no viewers."""
+    """Return the ends without those of viewers."""
     return [end for end in ends if not is_viewer(end.node)]
 
 
@@ -380,8 +379,7 @@ def sent_on(it: Index, topic: str) -> tuple[str, tuple[str, ...]]:
 
 
 def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:
-    """Return the robots that some nodes belong to, each once. A node outside of all robots that is
-    called like one of theirs counts as one more robot, without a namespace."""
+    """Return the robots of some nodes, and NO_NAMESPACE if one of none is called like one of theirs."""
     known, memo = unique(nodes), it.memo.setdefault(robots_of, {})
     # All nodes that send tf are asked for with each of their frames.
     if known not in memo:

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A system as a file: JSON, one record on each line, or YAML, which people edit. Both are one value,
-read with the same checks. Pure.
+"""A system as a file: JSON, one record on each line, or YAML, which people edit. Pure.
 
-``system.schema.json`` says the same of a file as a JSON schema.
-"""
+Both are one value, read with the same checks; ``system.schema.json`` describes it."""
 
 from __future__ import annotations
 
@@ -33,11 +31,11 @@ _PLAIN = lazy_compile(r"(?:[A-Za-z_~]|\.{0,2}/)(?:[A-Za-z0-9_./~-]|:(?=[A-Za-z0-
 def to_json(system: System) -> bytes:
     """Return the system as JSON, one record on each line, in the order of the records."""
     parts = [f'"schema": {SCHEMA}']
-    parts += [f'"{name}": {_json(value)}' for name, value in fields_of(system).items()]
+    parts += [f'"{name}": {_json_text(value)}' for name, value in fields_of(system).items()]
     return ("{\n " + ",\n ".join(parts) + "\n}\n").encode("utf-8", "backslashreplace")
 
 
-def _json(value: Any) -> str:
+def _json_text(value: Any) -> str:
     if has_rows(value):
         lines = (json.dumps(plain_value(it), ensure_ascii=False) for it in value)
         return "[\n  " + ",\n  ".join(lines) + "\n ]"
@@ -52,6 +50,7 @@ def to_yaml(system: System) -> str:
 
 
 def _block(value: Mapping[str, Any], indent: str) -> Iterator[str]:
+    """Yield the lines of a mapping in YAML, a line for each record."""
     for key, item in value.items():
         if not has_rows(item):
             yield f"{indent}{key}: {_flow(plain_value(item))}\n"
@@ -66,6 +65,7 @@ def _block(value: Mapping[str, Any], indent: str) -> Iterator[str]:
 
 
 def _flow(value: object) -> str:
+    """Return a value on one line of YAML (flow style)."""
     if isinstance(value, list):
         # Nearly all are rows of texts.
         each = _scalar if {*map(type, value)} == {str} else _flow
@@ -112,8 +112,7 @@ def from_json(data: bytes, file: str) -> System:
 
 
 def json_value(data: bytes, file: str) -> object:
-    """Return the value of a JSON file, with the records of a snapshot that are as they have to be;
-    raises InputError with file, what is wrong, what to do."""
+    """Return the value of a JSON file, the sound records of a snapshot read; raises InputError."""
     refuse_others(data, file, SNAPSHOT, PLAN)
     try:
         with gc_paused():
@@ -130,9 +129,7 @@ def json_value(data: bytes, file: str) -> object:
 
 
 def _record_or_object(value: dict[str, object]) -> object:
-    """Return the node or end for an object of JSON; otherwise the object, whose reader reports
-    faults. A large fleet has hundreds of thousands, and records with shared texts need a fifth of
-    the memory."""
+    """Return the node or end for an object of JSON, which saves memory; a wrong object as it is."""
     made = _FREQUENT.get(next(iter(value), ""))
     try:
         return made(**value) if made else value

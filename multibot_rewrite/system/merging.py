@@ -40,14 +40,13 @@ class Look(NamedTuple):
 
 
 def merged(looks: Sequence[Look]) -> System:
-    """Return all that any snapshot has; a single one is left as it is. Raises UsageError for
-    snapshots that no single system can explain: of two domains, or of DDS and Zenoh."""
+    """Return all that any snapshot has; raises UsageError for those of two domains or middlewares."""
     if len(looks) == 1:
         return looks[0].snapshot
-    _refuse_strangers(looks)
-    nodes = tuple(_nodes([look.snapshot.nodes for look in looks]))
-    endpoints = tuple(_endpoints([look.snapshot.ends for look in looks]))
-    frames = tuple(_frames(frame for look in looks for frame in look.snapshot.edges))
+    _check_one_system(looks)
+    nodes = tuple(_merged_nodes([look.snapshot.nodes for look in looks]))
+    endpoints = tuple(_merged_ends([look.snapshot.ends for look in looks]))
+    frames = tuple(_merged_edges(frame for look in looks for frame in look.snapshot.edges))
     heard = {(it.topic, it.frame, it.joints): it for look in looks for it in look.snapshot.heard}
     described = {it.topic: it for look in looks for it in look.snapshot.descriptions}
     around = _merged_environment(looks, nodes, endpoints)
@@ -66,14 +65,15 @@ def merged(looks: Sequence[Look]) -> System:
 
 
 def joined(first: System, *others: System) -> System:
-    """Return the first system, with what is in others as well."""
+    """Return the first system with the nodes, ends and other records of the others added."""
     every: dict[str, Any] = {
         key: tuple(it for one in (first, *others) for it in getattr(one, key)) for key in _HELD
     }
     return first._replace(**every)
 
 
-def _refuse_strangers(looks: Sequence[Look]) -> None:
+def _check_one_system(looks: Sequence[Look]) -> None:
+    """Raise UsageError for snapshots of two domains, or of DDS and Zenoh."""
     first = looks[0]
     around = first.snapshot.environment
     for look in looks[1:]:
@@ -90,7 +90,7 @@ def _refuse_strangers(looks: Sequence[Look]) -> None:
             )
 
 
-def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
+def _merged_nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
     """Yield each node once; two processes with a node of one name are two nodes."""
     best: dict[tuple[str, str], Node] = {}
     most: Counter[tuple[str, str]] = Counter()
@@ -110,7 +110,7 @@ def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
         yield from [best[name, process]] * new
 
 
-def _endpoints(looks: Sequence[Sequence[End]]) -> list[End]:
+def _merged_ends(looks: Sequence[Sequence[End]]) -> list[End]:
     """Return each endpoint once, from the snapshot with most detail about it."""
     best: dict[tuple[str, ...], list[End]] = {}
     for endpoints in looks:
@@ -118,19 +118,19 @@ def _endpoints(looks: Sequence[Sequence[End]]) -> list[End]:
             ((it.kind, it.name, it.role, it.node, it.process), it) for it in endpoints
         )
         for key, ends in found.items():
-            if key not in best or _detail(ends) > _detail(best[key]):
+            if key not in best or _amount_of_detail(ends) > _amount_of_detail(best[key]):
                 best[key] = ends
     placed = {key[:-1] for key in best if key[-1]}
     kept = [ends for key, ends in best.items() if key[-1] or key[:-1] not in placed]
     return sorted((end for ends in kept for end in ends), key=repr)
 
 
-def _detail(ends: Sequence[End]) -> tuple[int, int, int]:
+def _amount_of_detail(ends: Sequence[End]) -> tuple[int, int, int]:
     known = sum(end.qos is not None for end in ends)
     return known, sum(bool(end.type_hash) for end in ends), len(ends)
 
 
-def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
+def _merged_edges(frames: Iterable[Edge]) -> Iterator[Edge]:
     """Yield each transform once a topic, with the publishers of all snapshots."""
     found = lists_by_key(((frame.topic, frame.parent, frame.child), frame) for frame in frames)
     for (topic, parent, child), same in sorted(found.items()):
@@ -159,7 +159,7 @@ def _merged_environment(
         participants=participants(endpoints),
         settled=max((one.settled for one in around), key=WORST_LAST.index),
         seconds=max(one.seconds for one in around),
-        caveats=(*_caveats(looks), *unfinished(nodes, endpoints, asked.discovery_server)),
+        caveats=(*_merged_caveats(looks), *unfinished(nodes, endpoints, asked.discovery_server)),
     )
 
 
@@ -167,7 +167,7 @@ def _joined_once(words: Iterable[str]) -> str:
     return ", ".join(dict.fromkeys(filter(None, words)))
 
 
-def _caveats(looks: Sequence[Look]) -> Iterator[Caveat]:
+def _merged_caveats(looks: Sequence[Look]) -> Iterator[Caveat]:
     """Yield the limitations of each snapshot, without those that are checked again for all of them."""
     files = [look.file for look in looks]
     more = f" and {len(files) - _MANY} more" if len(files) > _MANY else ""

@@ -62,6 +62,7 @@ def has_rows(value: Any) -> bool:
 
 
 def _below_robots(system: System) -> dict[str, object]:
+    """Return robots with their nodes, nodes with ends and parameters, and what is left."""
     nodes: dict[str, list[object]] = defaultdict(list)
     ends = lists_by_key((it.node, it) for it in system.ends)
     parameters = lists_by_key((it.node, it) for it in system.parameters)
@@ -69,11 +70,11 @@ def _below_robots(system: System) -> dict[str, object]:
     for node in system.nodes:
         whose = node.robot if node.robot in robots else ""
         own = plain_value(node._replace(robot="") if whose else node)
-        if values := _as_values(parameters.get(node.name, ())):
+        if values := _parameter_values(parameters.get(node.name, ())):
             own["parameters"] = values
             del parameters[node.name]
         if node.name in ends:
-            own["ends"] = [_row(it) for it in ends.pop(node.name)]
+            own["ends"] = [_row_of_end(it) for it in ends.pop(node.name)]
         nodes[whose].append(own)
     below = {name: {"nodes": own} for name, own in nodes.items()}
     return {
@@ -84,8 +85,8 @@ def _below_robots(system: System) -> dict[str, object]:
     }
 
 
-def _as_values(own: Sequence[Parameter]) -> dict[str, object]:
-    """Return the values of a node's parameters by name; nothing where more is known of one."""
+def _parameter_values(own: Sequence[Parameter]) -> dict[str, object]:
+    """Return the values of a node's parameters by name; empty where more is known of one."""
     values = {it.name: parameter_value(it.value) for it in own}
     if not all(map(_is_plain, values.values())):
         return {}
@@ -99,7 +100,7 @@ def _is_plain(value: object) -> bool:
     return all(isinstance(it, bool | int | float | str) for it in items)
 
 
-def _row(end: End) -> object:
+def _row_of_end(end: End) -> object:
     """Return a row of the texts of an end; an object where more is known of it."""
     when = end.sure.why
     if (end.type_hash, end.qos, end.process, end.place) == ("", None, "", NOWHERE) and (
@@ -111,7 +112,7 @@ def _row(end: End) -> object:
 
 
 def system_from(value: dict[str, Any]) -> System:
-    """Return the system of a file's value; raises WrongValue."""
+    """Return the system that the value of a file describes; raises WrongValue."""
     found: dict[str, list[Any]] = defaultdict(list)
     _read_below("robots", partial(_read_robot, found), value.pop("robots", ()))
     _read_below("nodes", partial(_read_node, found, ""), value.pop("nodes", ()))
@@ -125,6 +126,7 @@ def system_from(value: dict[str, Any]) -> System:
 
 
 def _read_below(key: str, read: Reader, values: object) -> Any:
+    """Return what ``read`` makes of the values below a key, which errors name."""
     try:
         return read_list(read, values)
     except WrongValue as wrong:

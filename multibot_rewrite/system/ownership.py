@@ -60,8 +60,7 @@ class NameOwnership(NamedTuple):
         return robot if is_known or not self.plain_names else ""
 
     def robot_at_its_place(self, name: str) -> str:
-        """Return the robot whose tag is where this plan has tags, or an empty string; of tags of
-        several levels the longest counts."""
+        """Return the robot whose (longest) tag is where this plan has tags, or an empty string."""
         segments = name.strip("/").split("/")
         if self.robot_is_last:
             return self.robots.get(segments[-1], "") if len(segments) > 1 else ""
@@ -102,10 +101,10 @@ NOBODYS = NameOwnership({}, {}, {}, frozenset(), False)
 
 
 class Whose(NamedTuple):
-    """The robots of a system, and whose each name is: ``robot`` of a node, topic, service or action,
-    ``frame_robot`` of a frame; empty where it is of no robot or of all. ``plain`` and ``plain_frame``
-    have the name without the robot's. ``of_names`` and ``of_frames`` are how a plan has it.
-    """
+    """The robots of a system, and the robot of a node, topic, service or action, or of a frame.
+
+    It is empty where it is of no robot or of all. ``plain`` and ``plain_frame`` have the name
+    without the robot's. ``of_names`` and ``of_frames`` are how a plan has it."""
 
     robots: tuple[str, ...]
     robot: Callable[[str], str]
@@ -209,7 +208,7 @@ def _ends(segment: str) -> Iterator[str]:
 
 
 def _without_tag(segment: str, tag: str, is_last: bool) -> str:
-    """Return the segment without the tag: of ``robot_state_publisher_robot`` that where tags are."""
+    """Return the segment without the tag, which is at its other end only if it is not at this one."""
     before, after = segment.removesuffix(tag), segment.removeprefix(tag)
     ends = {True: (before, before.rstrip(SEPARATORS)), False: (after, after.lstrip(SEPARATORS))}
     found = (
@@ -243,7 +242,7 @@ def name_ownership(plan: System) -> NameOwnership:
 
 
 def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) -> set[str]:
-    """Return the words of nodes and names without the robot's name that may be a robot's."""
+    """Return the words in planned names, without the robots' own, that could be a robot's name."""
     nodes = draft.nodes
     likely = draft.robots.keys() & _segments_and_ends({w.code_name for w in plan.ends})
     # A node of all robots may name a robot's topic in its code, as a domain_bridge does.

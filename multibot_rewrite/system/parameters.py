@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which nodes of a graph are asked for what of their state, what they answer, and the values of
-parameters as texts. Pure."""
+"""Which nodes of a graph are asked for their state, what they answer, and parameters as texts. Pure."""
 
 import json
 from collections import Counter
@@ -40,8 +39,7 @@ def parameter_value(text: str) -> object:
 
 
 class Answer(NamedTuple):
-    """What one node answered: the label of its life cycle, empty for a node that is not managed, the
-    parameters that it was asked for and has, the controllers that it manages."""
+    """What one node answered: its lifecycle state (empty for none), parameters and controllers."""
 
     node: str
     lifecycle: str = ""
@@ -95,7 +93,8 @@ class Question(NamedTuple):
 def questions(
     graph: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> Iterator[Question]:
-    """Yield whom to ask for what; of two nodes with one name, one would answer for the other.
+    """Yield whom to ask for what, but none of two nodes with one name: one answers for the other.
+
     ``parameters`` are those that are wanted of a node in addition to ``use_sim_time``, whatever it
     lists."""
     times = Counter(node.name for node in graph.nodes)

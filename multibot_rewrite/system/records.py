@@ -19,6 +19,10 @@ COMMAND, STATE, JOINT = "command", "state", "joint"
 EXPORTS, CLAIMS = "exports", "claims"
 # What the node of a hardware component is known as.
 HARDWARE_NODE = "hardware_component"
+# How a node gets its remap rules.
+PROCESS, HOST, COMPONENT = "process", "host", "component"
+SPAWNER, PLUGIN = "spawner", "plugin"
+WAYS = (PROCESS, HOST, COMPONENT, SPAWNER, PLUGIN)
 # Kinds of addresses.
 DEVICE, CALIBRATION, COMPUTER, OWN = "device", "calibration", "computer", "own"
 # Why an observation ended: all expected nodes are there, the graph no longer changes, the timeout
@@ -94,12 +98,10 @@ def origin_of(text: str) -> Origin:
 
 
 class Sure(NamedTuple):
-    """Whether something is there: ``runs`` always, ``may`` on a condition, is switched ``off``, or
-    it is ``unknown``.
+    """Whether something exists: it ``runs``, ``may`` on a condition, is ``off`` or ``unknown``.
 
     ``why`` is the condition, or why it is not known, for people. Of the nodes ``instead`` exactly one
-    runs.
-    """
+    runs."""
 
     word: Annotated[str, SURE_WORDS]
     why: str = ""
@@ -165,7 +167,7 @@ class Node(NamedTuple):
     (SROS2), empty for none. ``robot`` is its robot's name, empty for a node of all robots or where that
     is not known. ``lifecycle`` is the label of its state, empty for a node that is not managed.
     ``host`` is any word: nodes of one host run on one machine, those of two on two. ``way`` is how it
-    gets its remap rules if not by --ros-args of its own (``remap.ways``), ``taker`` the node that takes
+    gets its remap rules if not by --ros-args of its own (of ``WAYS``), ``taker`` the node that takes
     them for it. ``plugin`` is where a description has the plugin that starts it, ``place`` what else
     names it, ``node_set`` the node set that it is from. ``known`` is what its node set or file
     calls it, ``untold`` what its source does not tell before it runs, each with its place.
@@ -212,12 +214,13 @@ class End(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """A transform on ``topic``, which is empty in a plan that says who sends it; ``publishers`` are all
-    nodes that may have sent it. A tf message does not say which node sent it; ``several`` is whether
-    more than one did. ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w;
-    empty if not known, or if several static ones differ; inf for NaN. ``rate`` is how often it came a
-    second, 0 if not known, ``age`` as in ``Heard``. ``OFF``: a parameter forbids it.
-    """
+    """A transform on ``topic``, which is empty in a plan that says who sends it.
+
+    ``publishers`` are all nodes that may have sent it: a tf message does not say which one did;
+    ``several`` is whether more than one did. ``transform`` is the last one: x, y, z in metres and a
+    quaternion x, y, z, w; empty if not known, or if several static ones differ; inf for NaN.
+    ``rate`` is how often it came a second, 0 if not known, ``age`` as in ``Heard``. ``OFF``: a
+    parameter forbids it."""
 
     child: str
     parent: str
@@ -238,12 +241,14 @@ def edge_of(parent: str, child: str, static: bool = False) -> Edge:
 
 
 class Heard(NamedTuple):
-    """The ``header.frame_id`` of a message that came on ``topic``, stamped ``age`` seconds before; inf
-    for a stamp of 0, and for a stopped clock, 0 for less than a second or not known. ``rate`` are
-    messages a second, 0 if not known, ``child`` the ``child_frame_id`` of odometry, ``joints`` the
-    names in a message about joints, which has no frame, ``back`` by how much a clock went back,
-    ``pose`` that of odometry or a pose, as the numbers of an edge; ``link`` is that of the sensor in a
-    simulator which sends it, and ``place`` where that is written."""
+    """The ``header.frame_id`` of a message that came on ``topic``.
+
+    It was stamped ``age`` seconds before; inf for a stamp of 0, and for a stopped clock, 0 for less
+    than a second or not known. ``rate`` are messages a second, 0 if not known, ``child`` the
+    ``child_frame_id`` of odometry, ``joints`` the names in a message about joints, which has no
+    frame, ``back`` by how much a clock went back, ``pose`` that of odometry or a pose, as the
+    numbers of an edge; ``link`` is that of the sensor in a simulator which sends it, and ``place``
+    where that is written."""
 
     topic: FullName
     frame: str
@@ -258,8 +263,7 @@ class Heard(NamedTuple):
 
 
 class Description(NamedTuple):
-    """The description that came on ``topic``: its links, and its joints that are not fixed; neither of
-    an empty one, or of a text that is no URDF."""
+    """The description on ``topic``: links, and joints that are not fixed; neither if it is no URDF."""
 
     topic: FullName
     links: tuple[str, ...] = ()
@@ -294,9 +298,10 @@ class Controller(NamedTuple):
 
 
 class Interface(NamedTuple):
-    """An interface of ros2_control, ``kind`` is command or state: ``node``, a controller manager,
-    ``exports`` it, or ``node``, a controller, ``claims`` it. A ``joint`` is exported by the controller
-    that moves it for MoveIt, and claimed by the node that plans for it."""
+    """An interface of ros2_control (``kind``: command or state) that ``node`` exports or claims.
+
+    For MoveIt a ``joint`` is exported by the controller that moves it, and claimed by the planning
+    node."""
 
     kind: str
     name: str
@@ -306,8 +311,7 @@ class Interface(NamedTuple):
 
 
 class Address(NamedTuple):
-    """What one process holds: a ``device`` or its ``calibration``, a port of its ``computer``, or what
-    is its ``own`` for another reason; ``name`` is the parameter that has it."""
+    """What only one process can have, such as a device or a port; ``name`` is the parameter with it."""
 
     kind: Annotated[str, ADDRESSES]
     name: str
@@ -424,12 +428,12 @@ def doubts(system: System) -> tuple[Caveat, ...]:
 
 
 def unseen(system: System) -> tuple[Caveat, ...]:
-    """Return the doubts about whether all nodes and ends are seen; those of a silent node are."""
+    """Return the doubts whether all nodes and ends are seen, without those about silent nodes."""
     return tuple(caveat for caveat in doubts(system) if caveat.code != SILENT)
 
 
 def clocks(system: System) -> dict[str, bool]:
-    """Return by node whether it goes by simulated time, if known."""
+    """Return whether each node uses simulated time, if known."""
     told = (it for it in system.parameters if it.name == SIM_TIME and it.value != UNTOLD)
     return {it.node: it.value == "true" for it in told}
 

@@ -55,8 +55,7 @@ def copying_nodes(plan: System) -> Mapping[str, str]:
 
 
 def without_bridged(plan: System, frames: Iterable[Edge]) -> tuple[Edge, ...]:
-    """Return the transforms without copies on ``/tf``, whose frames have a robot's namespace in
-    front, and without those that join its world to the fleet's."""
+    """Return the transforms without copies on ``/tf`` and those from a robot's world to the fleet's."""
     seen, copied = tuple(frames), set(copying_nodes(plan).values())
     # tf_namespace_bridge src/tf_namespace_bridge.cpp
     home = {

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What names and types of a system say: which topics move a robot, which say where it is or what it
-sees; which nodes run with any fleet and are no part of a robot: tools, and what simulators start."""
+"""What names and types say: topics that move or locate a robot, nodes that are tools of any fleet."""
 
 from __future__ import annotations
 
@@ -83,12 +82,12 @@ def is_description(name: str, type_: str) -> bool:
 
 
 def is_of_a_body(type_: str) -> bool:
-    """Return whether a single robot's body measures it: its joints, its way, its scan."""
+    """Return whether a message type is of one robot's own data: joints, odometry, scans."""
     return type_ in _BODY
 
 
 def is_of_one_sensor(type_: str) -> bool:
-    """Return whether one device, or one filter, sends messages of a type."""
+    """Return whether messages of a type come from one device or filter."""
     return type_ in _OF_ONE_SENSOR
 
 
@@ -99,8 +98,7 @@ def is_of_one_robot(plain: str, type_: str) -> bool:
 
 
 def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Return whether the node with this full name is a tool. ``more`` are patterns in addition to
-    the usual ones; without a slash they are of any namespace."""
+    """Return whether a full name is a tool's; ``more`` patterns without a slash fit any namespace."""
     word = node.rpartition("/")[2]
     if is_tool_word(word):
         return True
@@ -117,7 +115,7 @@ def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
 
 
 def is_viewer(node: str) -> bool:
-    """Return whether a node only looks, or passes on what a person asks for."""
+    """Return whether a node only shows data, or passes on what a person asks for."""
     return only_looks(last_word(node))
 
 

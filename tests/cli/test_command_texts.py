@@ -159,17 +159,17 @@ def test_a_section_of_the_definitions_as_docs_node_sets_md_has_it(tmp_path: Path
         ])  # fmt: skip
         columns = ("type", "name", "ROS", "also called", "rows", "source")
         row = ("plugin", "mine", "2", "acme::Mine", "2", "acme/camera 1.0")
-        assert [*inspect._list([section])] == [Grid(columns, [row])]
+        assert [*inspect._section_table([section])] == [Grid(columns, [row])]
     assert "" in [*inspect.details([section, section])], "an empty line is between two"
     said = "no plugin, node, class, element, sensor type, rule or file has this name"
     for name, hint in (
         ("qqqqqq", "multibot inspect lists all"), ("mines", "the nearest known: mine"),
         ("undeclared-lnk", "the nearest known: undeclared-link"),
     ):  # fmt: skip
-        text = str(inspect._unknown(known, name, ("plugin",)))
+        text = str(inspect._unknown_name(known, name, ("plugin",)))
         assert text == f"{name!r} is not known: {said}; {hint}"
     later = load_definitions((str(file),), "humble")
-    text = str(inspect._unknown(later, "mine", ("plugin",)))
+    text = str(inspect._unknown_name(later, "mine", ("plugin",)))
     assert text.startswith("'mine' is not in humble, only in jazzy, kilted, lyrical, rolling; ")
 
 

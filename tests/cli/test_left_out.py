@@ -120,4 +120,4 @@ def test_the_other_commands_leave_the_same_folders_out(workspace: Path) -> None:
     assert sorted(search(["."]).every) == looked
     for name in ("build/p.xacro", "old/p.xacro", "src/p.xacro"):
         (workspace / name).write_text("<robot/>")
-    assert included_by._xacros(".") == ["src/p.xacro"]
+    assert included_by._xacro_files(".") == ["src/p.xacro"]

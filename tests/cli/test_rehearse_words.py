@@ -33,7 +33,7 @@ def test_odometry_that_a_driver_sends_is_named_with_its_robot(
     (tmp_path / "r.urdf").write_text(TWO_LINKS)
     fleet = f"description: r.urdf\nlayout: tf-per-robot\nnode_sets: {node_set}\ndistro: jazzy\n"
     (tmp_path / "fleet.yaml").write_text(f"{fleet}robots: [{{name: left, namespace: x/l}}]\n")
-    monkeypatch.setattr(rehearse, "_played", lambda *_: ({rehearse.ONE: System()}, {}))
+    monkeypatch.setattr(rehearse, "_play", lambda *_: ({rehearse.ONE: System()}, {}))
     multibot.main(["rehearse", str(tmp_path / "fleet.yaml")])
     said = [it for it in capsys.readouterr().err.splitlines() if "the rehearsal sends it" in it]
     end = " comes from a driver or simulator; the rehearsal sends it"

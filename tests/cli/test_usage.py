@@ -32,11 +32,14 @@ def test_given_options_are_named_as_they_are_written() -> None:
 
 @pytest.mark.parametrize("text", ["a.urdf", ":3", "a.urdf:", "a.urdf:x", "3"])
 def test_a_line_to_explain_is_a_file_and_a_number(text: str) -> None:
-    assert said(why._place, text) == f"--why {text}: write FILE:LINE, for example rover.urdf:34"
+    assert (
+        said(why._file_and_line, text)
+        == f"--why {text}: write FILE:LINE, for example rover.urdf:34"
+    )
 
 
 def test_a_file_with_a_colon_may_be_explained() -> None:
-    assert why._place("a:b.urdf:34") == ("a:b.urdf", 34)
+    assert why._file_and_line("a:b.urdf:34") == ("a:b.urdf", 34)
 
 
 # ---------------------------------------------------------------- the source of a graph
@@ -119,7 +122,7 @@ def test_a_domain_that_rcl_would_not_take_is_said(monkeypatch: pytest.MonkeyPatc
 def test_parameters_of_a_plan_are_asked_by_node() -> None:
     asked = [("/a", "x"), ("/b", "z"), ("/a", "y")]
     plan = System(parameters=tuple(Parameter(node, name, "1") for node, name in asked))
-    assert check._parameters(plan) == {"/a": ["x", "y"], "/b": ["z"]}
+    assert check._asked_parameters(plan) == {"/a": ["x", "y"], "/b": ["z"]}
 
 
 @pytest.mark.parametrize(
@@ -128,12 +131,12 @@ def test_parameters_of_a_plan_are_asked_by_node() -> None:
 )  # fmt: skip
 def test_a_plan_is_of_its_release(release: str, asked: str, found: str) -> None:
     given = options(distro=asked or None, plan="plan.yaml")
-    assert check._of_release(given, System(release=release)).release == found
+    assert check._checked_release(given, System(release=release)).release == found
 
 
 def test_a_plan_of_another_release_is_refused() -> None:
     given = options(distro="humble", plan="plan.yaml")
-    assert said(check._of_release, given, System(release="jazzy")) == (
+    assert said(check._checked_release, given, System(release="jazzy")) == (
         "plan.yaml is for ROS 2 jazzy; make one with multibot plan --distro humble,"
         " or leave out --distro"
     )
@@ -152,14 +155,16 @@ def test_notes_about_a_plan_are_counted_where_nobody_asks_for_them(
     gaps = tuple(Finding(code, level, "open") for code, level in known)
     plan = System(gaps=gaps)
     usual = {"select": [], "ignore": [], "quiet": False, "program": "multibot", "verbose": False}
-    found = check._gaps(options(**usual, fail_on=ERROR), plan)
+    found = check._shown_gaps(options(**usual, fail_on=ERROR), plan)
     assert found == [gaps[0], gaps[3], gaps[4]]
     assert capsys.readouterr().err == (
         "multibot: note: 2 notes about topics that no known node sends; --verbose shows them\n"
     )
-    assert check._gaps(options(**usual, fail_on=NOTE), plan) == list(gaps)
-    assert check._gaps(options(**{**usual, "verbose": True}, fail_on=ERROR), plan) == list(gaps)
-    assert len(check._gaps(options(**usual, fail_on=ERROR), System(gaps=gaps[:1]))) == 1
+    assert check._shown_gaps(options(**usual, fail_on=NOTE), plan) == list(gaps)
+    assert check._shown_gaps(options(**{**usual, "verbose": True}, fail_on=ERROR), plan) == list(
+        gaps
+    )
+    assert len(check._shown_gaps(options(**usual, fail_on=ERROR), System(gaps=gaps[:1]))) == 1
     assert capsys.readouterr().err == ""
 
 

@@ -216,4 +216,4 @@ def test_a_fleet_file_to_view_has_its_own(
 ) -> None:
     usual = {"words": [], "robots": [], "layout": None, "affix": None, "topics": None}
     asked = options(**{**usual, "separator": [], "shared": [], "input": name, **given})
-    assert said(view._plan, asked) == f"{name}: a fleet file has its own, leave out {written}"
+    assert said(view._plan_of, asked) == f"{name}: a fleet file has its own, leave out {written}"

@@ -18,7 +18,7 @@ from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import launch, load_fleet
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.live.rehearsal import stage, staged, with_substitutes
+from multibot_rewrite.live.rehearsal import graph_of_stubs, isolated_environment, with_substitutes
 from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.producers.launch.performed import Launching, performed
 from multibot_rewrite.rules.check import check
@@ -337,7 +337,7 @@ def test_more_robots_than_the_file_has_are_built(tmp_path: Path) -> None:
 def test_slam_toolbox_is_active_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'")
     of_nav2(tmp_path, layout="tf-per-robot", node_sets="slam_toolbox")
-    for name, value in stage(None).items():
+    for name, value in isolated_environment(None).items():
         monkeypatch.setenv(name, value)
     out, real = tmp_path / "out", {"sync_slam_toolbox_node": SUPPORT / "lifecycle_stand_in.py"}
     words = ("robots:=robot2", "simulator:=false")
@@ -364,6 +364,6 @@ def test_what_is_started_is_as_planned(kind: str, layout: str, tmp_path: Path) -
     fleet = load_fleet(tmp_path / "fleet.yaml")
     told, _ = launched(out / "fleet.launch.py", tmp_path, "rviz:=false", programs=programs(out))
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
-    graph, replaced = staged(nodes_of(told, fleet), stage(None), 40.0)
+    graph, replaced = graph_of_stubs(nodes_of(told, fleet), isolated_environment(None), 40.0)
     assert doubts(graph) == ()
     assert [it.message for it in check(with_substitutes(plan, replaced), graph)] == []

@@ -10,7 +10,7 @@ import pytest
 
 from multibot_rewrite import InputError
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
-    _plain,
+    _without_nulls,
     move_group_parameters,
     parameters_from,
 )
@@ -125,7 +125,7 @@ def test_what_move_group_alone_reads() -> None:
 )  # fmt: skip
 def test_values_are_those_that_rcl_takes(value: object, plain: object) -> None:
     """rcl_yaml_param_parser: no null, and a list of one type that is no list."""
-    found = _plain(value)
+    found = _without_nulls(value)
     assert (found, repr(found)) == (plain, repr(plain))
 
 

@@ -82,6 +82,17 @@ def test_the_build_starts_them_and_opens_one_window(
     assert (out / "one.rviz").exists()
 
 
+@pytest.mark.parametrize("layout", ["both", "postfix"])
+def test_simulated_time_without_a_clock_is_refused_beside_relays(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], layout: str
+) -> None:
+    fleet(tmp_path, layout)
+    with (tmp_path / "fleet.yaml").open("a") as file:
+        file.write("use_sim_time: true\nsimulator: none\n")
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 1
+    assert "MG501" in capsys.readouterr().err
+
+
 def test_a_layout_that_has_nothing_to_relay_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="has one /tf for all robots; remove relayed"):
         fleet(tmp_path, "frames-per-robot")

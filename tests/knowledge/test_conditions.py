@@ -7,10 +7,10 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.conditions import (
+    condition_in_release,
     holds,
-    of_release,
     parse_condition,
-    said,
+    readable,
     verdict,
 )
 
@@ -125,7 +125,7 @@ def test_what_is_no_condition(text: str, said: str) -> None:
 def test_what_a_condition_says_of_releases_is_settled(
     text: str, release: str, left: str | None
 ) -> None:
-    assert of_release(text, release) == left
+    assert condition_in_release(text, release) == left
 
 
 @pytest.mark.parametrize(
@@ -176,4 +176,4 @@ def test_what_a_parameter_says_of_how_it_is_started(text: str, known: bool | Non
     ],
 )
 def test_people_read_a_condition_as_english(text: str, words: str) -> None:
-    assert said(text) == words
+    assert readable(text) == words

@@ -13,7 +13,7 @@ from multibot_rewrite.knowledge import declared
 from multibot_rewrite.knowledge.declared import (
     Base,
     Declared,
-    _base,
+    _base_of,
     canonical,
 )
 from multibot_rewrite.knowledge.node_library import (
@@ -23,7 +23,7 @@ from multibot_rewrite.knowledge.node_library import (
 from multibot_rewrite.knowledge.node_sets import in_release
 from multibot_rewrite.knowledge.parameters import (
     _anywhere,
-    _node,
+    _node_in_release,
     guess,
     load_known_nodes,
 )
@@ -342,8 +342,8 @@ def test_a_row_of_what_a_package_declares() -> None:
         "<id>.on any b.cpp:4 releases=jazzy,kilted yaml 1.1 ! bounds([0, 1]) gt([0])",
         "low int c.cpp:5 read",
     ))  # fmt: skip
-    assert [*declared._rows("")] == []
-    first, second, third = declared._rows(section)
+    assert [*declared._parameters_of("")] == []
+    first, second, third = declared._parameters_of(section)
     assert first == Declared(
         "rate", "double", "", "", "declared", "ros/nav2@1.0 nav2_x/src/a.cpp:3"
     )
@@ -380,7 +380,7 @@ def test_the_classes_of_a_base_with_their_releases_and_older_names() -> None:
         "nav2_core::A]", "a::B ros/a x.xml", "a::C releases=jazzy,kilted ros/a x.xml", "",
         "a/D -> a::B docs.nav2.org migration/Humble.html", "A -> a::B ros/a x.xml",
     ))  # fmt: skip
-    assert _base(section) == Base(
+    assert _base_of(section) == Base(
         {"a::B": "", "a::C": "jazzy,kilted"}, {"a/D": "a::B", "A": "a::B"}, frozenset({"a/D"})
     )
     assert canonical(" a/b::C\n") == "a::b::C"
@@ -420,7 +420,7 @@ def test_what_parameters_of_known_nodes_say_of_others(
     params: tuple[str, ...], taken: list[str]
 ) -> None:
     pairs = (it.split(": ") for it in params)
-    nodes = [_node(NodeParameters("a", "p", (Param(*it),)), "jazzy") for it in pairs]
+    nodes = [_node_in_release(NodeParameters("a", "p", (Param(*it),)), "jazzy") for it in pairs]
     guessing = re.compile(r"(?P<interface>\w*interfaces)|(?P<frame>\w*frame)")
     assert [it.path for it in _anywhere(nodes, guessing)] == taken
 

@@ -126,7 +126,7 @@ def stand_ins(monkeypatch: pytest.MonkeyPatch) -> None:
 def frontend(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """Yield what XML can say, in launch or in the stand-in."""
     stand_ins(monkeypatch)
-    made_once = (launch_context.substitution_class, later._action, later._component_class)
+    made_once = (launch_context.substitution_class, later._action_class, later._component_class)
     for it in made_once:
         it.cache_clear()
     yield importlib.import_module("multibot_rewrite.launch.frontend")
@@ -658,7 +658,7 @@ def test_a_note_is_no_warning(context: Any, monkeypatch: pytest.MonkeyPatch) -> 
     )
     monkeypatch.setattr(importlib.import_module("launch.logging"), "get_logger", lambda name: log())
     levels = ("note", "warning", "error")
-    launch_context._warn(context, [Finding("MB100", it, "said") for it in levels])
+    launch_context._log_findings(context, [Finding("MB100", it, "said") for it in levels])
     assert told == ["info", "warning", "warning"]
 
 

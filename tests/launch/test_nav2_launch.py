@@ -28,7 +28,7 @@ from multibot_rewrite import launch
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2, known_program
-from multibot_rewrite.live.rehearsal import stage
+from multibot_rewrite.live.rehearsal import isolated_environment
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"
 in_launch = pytest.mark.skipif(bool(launch.missing()), reason=REASON)
@@ -140,7 +140,7 @@ def test_slam_toolbox_is_configured_and_activated_once(
     ``use_lifecycle_manager`` false, its default, it makes no bond (slam_toolbox_common.cpp)."""
     fleet = written(tmp_path, node_set="nav2_slam", layout="tf-per-robot") / "fleet.yaml"
     fleet.write_text(fleet.read_text().replace("  - {name: robot2", "#"))
-    for name, value in stage(None).items():
+    for name, value in isolated_environment(None).items():
         monkeypatch.setenv(name, value)
     nav2 = [known_program(it, "jazzy") for it in NAV2 if it in load_nodes("jazzy")]
     programs = {it.executable: it.package for it in nav2}

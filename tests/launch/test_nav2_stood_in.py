@@ -270,11 +270,11 @@ def test_what_windows_are_started_with(clock: bool | None, monkeypatch: pytest.M
     clocks = [] if clock is None else [{"use_sim_time": clock}]
     usual = {"package": "rviz2", "executable": "rviz2", "parameters": clocks}
     rules = (("/tf", "/robot1/tf"),)
-    assert nav2._window(None, "a.rviz", RvizText("robot1", "t", "/robot1", rules)) == {
+    assert nav2._rviz_window(None, "a.rviz", RvizText("robot1", "t", "/robot1", rules)) == {
         **usual, "namespace": "/robot1", "remappings": [*rules],
         "arguments": ["-d", (None, "robot1/a.rviz", "t")],
     }  # fmt: skip
-    assert nav2._window(None, "a.rviz", RvizText("", "t")) == {
+    assert nav2._rviz_window(None, "a.rviz", RvizText("", "t")) == {
         **usual, "arguments": ["-d", (None, "all/a.rviz", "t")],
     }  # fmt: skip
 

@@ -105,7 +105,7 @@ def write(path: Path, text: str) -> None:
 
 def forget() -> None:
     """Forget all that was read, as a new process has read nothing yet."""
-    for it in (packages.entries.__wrapped__, packages._candidates, packages._own_package):
+    for it in (packages.entries.__wrapped__, packages._candidate_folders, packages._own_package):
         it.cache_clear()
     packages.packages_below.cache_clear()
     packages._by_lower_case.cache_clear()

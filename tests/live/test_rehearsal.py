@@ -40,11 +40,10 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
     without_doubles,
 )
-from multibot_rewrite.planning.plan import expect
+from multibot_rewrite.planning.planned_system import expect
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table, plugin_nodes
 from multibot_rewrite.planning.transforms import edges_of, frames_of, with_odometry
-from multibot_rewrite.planning.ways import WAYS
 from multibot_rewrite.system.json import from_json
 from multibot_rewrite.system.records import (
     ACTION,
@@ -54,6 +53,7 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    WAYS,
     Edge,
     System,
     edge_of,
@@ -325,19 +325,25 @@ def test_a_stage_is_a_domain_of_this_machine_where_nobody_is(
     given = {"HOME": "/h", **dict.fromkeys(elsewhere, "1")}
     monkeypatch.setattr(rehearsal.os, "environ", given)
     alone = {"HOME": "/h", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    assert rehearsal.stage(None) == {**alone, "ROS_DOMAIN_ID": "100"}
+    assert rehearsal.isolated_environment(None) == {**alone, "ROS_DOMAIN_ID": "100"}
     given["ROS_DOMAIN_ID"] = "0"
-    assert domains([rehearsal.stage(None), rehearsal.stage(5), rehearsal.stage(0)]) == [
+    assert domains(
+        [
+            rehearsal.isolated_environment(None),
+            rehearsal.isolated_environment(5),
+            rehearsal.isolated_environment(0),
+        ]
+    ) == [
         "0",
         "5",
         "0",
     ]
     busy |= {0, 100, 1, 2}
-    assert domains([rehearsal.stage(None)]) == ["100"]
-    assert domains(rehearsal.stages(None, 3)) == ["100", "3", "4"]
-    assert domains(rehearsal.stages(99, 2)) == ["99", "3"]
+    assert domains([rehearsal.isolated_environment(None)]) == ["100"]
+    assert domains(rehearsal.isolated_environments(None, 3)) == ["100", "3", "4"]
+    assert domains(rehearsal.isolated_environments(99, 2)) == ["99", "3"]
     busy.clear()
-    assert rehearsal.stages(98, 4) == [
+    assert rehearsal.isolated_environments(98, 4) == [
         {**alone, "ROS_DOMAIN_ID": it} for it in ("98", "99", "100", "1")
     ]
 
@@ -372,7 +378,7 @@ def test_a_look_without_all_that_the_stubs_have_is_taken_again(
     seen = [full, first(full)]
     monkeypatch.setattr(rehearsal, "observe", lambda *_: seen.pop())
     monkeypatch.setattr(rehearsal, "_started", lambda *_: nullcontext(started))
-    graph, replaced = rehearsal.staged([], {}, 1.0)
+    graph, replaced = rehearsal.graph_of_stubs([], {}, 1.0)
     assert (len(seen), replaced) == (2 - looks, {"a": "b"})
     assert graph == (full if looks == 2 else first(full))
 

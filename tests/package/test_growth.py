@@ -39,12 +39,12 @@ from multibot_rewrite.rules.system import causes
 
 SMALL, LARGE = 100, 400
 REMEMBERED = (
-    nearest._nearest,
+    nearest._cached_nearest,
     causes.letters,
     parameter_files._sections,
     handed_on.document_of,
     handed_on.has_sections,
-    bridges._of_text,
+    bridges._rows_of_text,
     fnmatch._compile_pattern,  # type: ignore[attr-defined]
 )
 # As much may be made once, and found again by halving.
@@ -280,7 +280,7 @@ def test_a_place_is_found_from_the_block_it_is_in(
     ends: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[int] = []
-    count = "multibot_rewrite.base.findings.finding._characters"
+    count = "multibot_rewrite.base.findings.finding._count_characters"
     monkeypatch.setattr(count, lambda text: read.append(len(text)) or len(text))
     source = (("x" * 40 + ends) * 20_000).encode()
     locate(source, 0)

@@ -22,11 +22,11 @@ from page_calls import (
     Targets,
     Verdict,
     concerns_of,
+    css_class_of,
     has_faults,
     ids_in,
     ids_of,
     link_to,
-    look_of,
     make_ids,
     make_scene,
     make_sections,
@@ -215,8 +215,8 @@ def test_a_section_for_each_robot_and_one_for_the_rest() -> None:
     assert first.levels == {"error": 1, "warning": 1, "inconclusive": 0}
     assert [it.faulty for it in (first, second, rest)] == [True, True, True]
     assert [it.open for it in (first, second, rest)] == [True] * 3
-    assert [look_of(it) for it in (first, second, rest)] == ["bad", "odd", "bad"]
-    assert look_of(second._replace(faulty=False)) == "good"
+    assert [css_class_of(it) for it in (first, second, rest)] == ["bad", "odd", "bad"]
+    assert css_class_of(second._replace(faulty=False)) == "good"
     assert concerns_of(made) == {"a": (0, 1, 2), "": (3,)}
     ids = make_ids(made)
     assert ids_in(first, ids) == {ids.nodes["/a/x"], ids.names["/a/t"]}

@@ -438,3 +438,9 @@ def test_a_node_of_a_node_set_comes_first_with_the_ends_of_its_program() -> None
     part = known_node(launched("acme", "acme::Driver", "driver"), (own,), KNOWN)
     assert part is not None
     assert [it.name for it in part.endpoints] == ["b", "c"]
+
+
+def test_a_program_started_in_a_way_that_its_entry_does_not_tell_is_not_known() -> None:
+    relay = {"relay": NodeFacts("relay", "t", (Endpoint(TOPIC, PUBLISHES, "<o>", when="- unset"),))}
+    assert known_node(launched("t", "relay"), (), relay) is not None
+    assert known_node(launched("t", "relay", arguments=("/a", "/b")), (), relay) is None

@@ -256,7 +256,7 @@ def test_why_no_edit_makes_a_change(touched: list[Piece], why: str) -> None:
 def test_only_what_differs_is_changed(
     start: int, end: int, new: str, left: tuple[int, int, str]
 ) -> None:
-    assert source_edits._trimmed(ValueEdit(0, "name", "abcd", start, end, new)) == left
+    assert source_edits._changed_part(ValueEdit(0, "name", "abcd", start, end, new)) == left
 
 
 def test_edits_are_made_in_their_order_and_do_not_meet() -> None:

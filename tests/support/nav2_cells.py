@@ -34,7 +34,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.outputs.built_states import with_built
 from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.library.loaded_fleet import LoadedFleet
-from multibot_rewrite.live.rehearsal import stage, with_substitutes
+from multibot_rewrite.live.rehearsal import isolated_environment, with_substitutes
 from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.producers.ros.child import ask, observe, running
 from multibot_rewrite.producers.ros.request import Request
@@ -305,7 +305,7 @@ def outcome(cell: Cell, folder: Path, sources: Path) -> Outcome:
 def looked_at(order: str, out: Path) -> Outcome:
     """Return the graph of the stand-ins against the plan."""
     # With LOCALHOST the 33rd process and those after it are not found.
-    environ = {**stage(None), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+    environ = {**isolated_environment(None), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
     with running(str(STAND_INS.stem), order, {**environ, "PYTHONPATH": _path(environ)}) as child:
         replaced = json.loads(child.next_message() or b"{}")
         plan = with_built(read_plan((out / "plan.yaml").read_bytes(), "plan.yaml"), str(out))

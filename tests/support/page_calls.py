@@ -10,11 +10,11 @@ from multibot_rewrite.live.watching import Outcome, Verdict
 from multibot_rewrite.pages.page import to_html
 from multibot_rewrite.pages.page_sections import (
     concerns_of,
+    css_class_of,
     has_faults,
     ids_in,
     ids_of,
     link_to,
-    look_of,
     make_ids,
     make_sections,
     only_common,

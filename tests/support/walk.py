@@ -26,7 +26,7 @@ from paths import fixture_text
 from told_nodes import nodes_of, words_of
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.live.rehearsal import stage, staged
+from multibot_rewrite.live.rehearsal import graph_of_stubs, isolated_environment
 from multibot_rewrite.system.json import to_json
 
 REPOSITORY = "nav2_minimal_turtlebot_simulation"
@@ -137,8 +137,8 @@ def _seen(told: list[dict[str, Any]], folder: Path) -> bytes:
 
     Messages that are not installed here are replaced by others, and have their names again here.
     """
-    fleet, environ = load_fleet(folder / "fleet.yaml"), stage(None)
-    graph, replaced = staged(nodes_of(told, fleet), environ, 40.0)
+    fleet, environ = load_fleet(folder / "fleet.yaml"), isolated_environment(None)
+    graph, replaced = graph_of_stubs(nodes_of(told, fleet), environ, 40.0)
     seen = to_json(graph)
     for real, other in replaced.items():
         seen = seen.replace(json.dumps(other).encode(), json.dumps(real).encode())

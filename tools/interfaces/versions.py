@@ -43,6 +43,7 @@ ALL = {
     "nmea_navsat_driver": "548c84a",
     "ublox": "577ef65",
     "apriltag_ros": "beffb4c",
+    "topic_tools": "b903e6b",
     "depthimage_to_laserscan": "79b60bf",
     "realsense2_camera": "775b167c",
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.conditions import readable
 from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS, ControllerWay
 from multibot_rewrite.knowledge.node_library import NodeLibrary, NodeSet
 from multibot_rewrite.knowledge.node_sets import every_release
@@ -65,7 +65,7 @@ def _node_set(name: str, node_set: NodeSet) -> str:
 
 def _member(node: NodeFacts) -> str:
     notes = [f"`{e.name}` remapped to `{e.remapped}`" for e in node.endpoints if e.remapped]
-    notes += [f"when: {said(node.when)}"] * bool(node.when) + ["for all robots"] * node.shared
+    notes += [f"when: {readable(node.when)}"] * bool(node.when) + ["for all robots"] * node.shared
     notes += _in(node.releases)
     return f"`{node.name}`" + (f": {', '.join(dict.fromkeys(notes))}" if notes else "")
 
@@ -116,7 +116,7 @@ def _cells(endpoint: Endpoint) -> list[str]:
     notes = [*_in(endpoint.releases), *notes, *(f"source: {it}" for it in endpoint.source)]
     parameter = f"`{endpoint.parameter}`" if endpoint.parameter else ""
     name = f"{endpoint.role} {endpoint.kind}", f"`{endpoint.name}`"
-    return [*name, types, parameter, plain(said(endpoint.when)), plain("; ".join(notes))]
+    return [*name, types, parameter, plain(readable(endpoint.when)), plain("; ".join(notes))]
 
 
 def _in(releases: str) -> list[str]:

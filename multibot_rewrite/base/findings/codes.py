@@ -44,10 +44,7 @@ def no_rule(word: str, rules: Mapping[str, Rule]) -> str:
 
 
 def find_codes(words: Iterable[str], where: str, rules: Mapping[str, Rule]) -> tuple[str, ...]:
-    """Return the codes, and beginnings of codes, that the words are or name.
-
-    Raise UsageError for a word that is no code, no beginning of one and no rule's name.
-    """
+    """Return the codes, and beginnings of codes, that the words are or name; raises UsageError."""
     known = {**{it: it for it in known_beginnings(rules)}, **names_to_codes(rules)}
     unknown = next((it for it in words if it not in known), None)
     if unknown is not None:

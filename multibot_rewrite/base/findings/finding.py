@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The one record of a finding (of a description, a parameter file, a remap table, the live graph), and
-the rule that it is of: its code, level and check. A rule's words and examples are its page,
-``rules/pages/CODE.md``.
+"""The record of a finding, and the rule that it is of: its code, level and check.
+
+A finding is about a description, a parameter file, a remap table or the live graph. A rule's words
+and examples are its page, ``rules/pages/CODE.md``.
 
 A page says what is found, why that hurts, the fix, and has examples. Below the title are three
 paragraphs, the second begins with ``**Why.**``, the third with ``**Fix.**``. Then come fenced blocks,
 each below its title: ``Bad``, ``Fixed`` (what ``--fix`` makes), ``Good``, and ``With it, `NAME` ``
-for each other file. ``Bad (line N)`` says where the finding is.
-"""
+for each other file. ``Bad (line N)`` says where the finding is."""
 
 import os
 from collections.abc import Callable, Iterator, Mapping
@@ -31,29 +31,30 @@ LEVELS = (ERROR, WARNING, NOTE)
 def locate(source: bytes, offset: int) -> tuple[int, int]:
     """Return line and column, from 1, of a byte offset; the column counts characters."""
     block = offset // _BLOCK
-    return _behind(*_blocks(source)[block], source[block * _BLOCK : offset])
+    return _place_after(*_block_starts(source)[block], source[block * _BLOCK : offset])
 
 
 @lru_cache(maxsize=4)
-def _blocks(source: bytes) -> list[tuple[int, int]]:
-    """Return line and column of the start of each block."""
+def _block_starts(source: bytes) -> list[tuple[int, int]]:
+    """Return line and column of the start of each block of ``_BLOCK`` bytes."""
     here = 1, 1
     found = [here]
     for at in range(0, len(source), _BLOCK):
-        here = _behind(*here, source[at : at + _BLOCK])
+        here = _place_after(*here, source[at : at + _BLOCK])
         found.append(here)
     return found
 
 
-def _behind(line: int, column: int, text: bytes) -> tuple[int, int]:
+def _place_after(line: int, column: int, text: bytes) -> tuple[int, int]:
     """Return line and column behind a text that starts at these."""
     lines = text.count(b"\n")
     if not lines:
-        return line, column + _characters(text)
-    return line + lines, _characters(text[text.rfind(b"\n") + 1 :]) + 1
+        return line, column + _count_characters(text)
+    return line + lines, _count_characters(text[text.rfind(b"\n") + 1 :]) + 1
 
 
-def _characters(text: bytes) -> int:
+def _count_characters(text: bytes) -> int:
+    """Return how many characters a text in UTF-8 has."""
     return len(text) if text.isascii() else len(text.translate(None, _FOLLOWING))
 
 
@@ -66,8 +67,7 @@ class Remap(NamedTuple):
 
 
 class Setting(NamedTuple):
-    """A value that a node of a graph should have: of a parameter, or of a field of the messages that it
-    sends on ``topic``, which is empty for a parameter."""
+    """A value that a node should have: of a parameter, or of a field of its messages on ``topic``."""
 
     node: str
     name: str
@@ -193,8 +193,7 @@ class Rule(NamedTuple):
         return rule_page(self.examples or self.code)
 
     def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
-        """Return a finding of this rule. ``place`` are other fields of ``Finding``; one with a line and
-        no column is at its first column."""
+        """Return a finding of this rule with the fields ``place``; a line without a column gets 1."""
         if "line" in place:
             place.setdefault("column", 1)
         level = place.pop("level", self.level)
@@ -237,9 +236,10 @@ _TITLE = lazy_compile(r"(Bad|Fixed|Good|With it, `[^`]+`)(?: \(line ([0-9]+)\))?
 
 
 class RulePage(NamedTuple):
-    """The words and examples of a rule: ``bad`` has the finding exactly once, in line ``line``, and
-    ``good`` has none; ``fixed`` is what the fix makes of it, if there is one; ``beside`` are files by
-    name."""
+    """The words and examples of a rule.
+
+    ``bad`` has the finding exactly once, in line ``line``, and ``good`` has none; ``fixed`` is what the
+    fix makes of ``bad``, if there is one; ``beside`` are files by name."""
 
     what: str = ""
     why: str = ""

@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     class Selecting(Protocol):
-        """``select`` and ``ignore`` are codes or how they begin, the longer one wins; ``levels`` maps
-        them to levels or ``OFF``."""
+        """Codes or their beginnings to select and ignore (the longer wins), and their levels."""
 
         @property
         def select(self) -> Sequence[str]:
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
 
 
 class Selection(NamedTuple):
-    """What ``--select`` and ``--ignore`` ask for; every code begins with an M."""
+    """What ``--select`` and ``--ignore`` ask for."""
 
     select: tuple[str, ...] = ("M",)
     ignore: tuple[str, ...] = ()
@@ -78,17 +77,16 @@ def level_of(selection: "Selecting", code: str, default: str) -> str:
 
 
 def _level_key(selection: "Selecting", code: str) -> str:
+    """Return the longest beginning of a code for which a level is set, or ""."""
     if not selection.levels:
         return ""
     return max((it for it in selection.levels if code.startswith(it)), key=len, default="")
 
 
 def grouped(findings: Iterable[Finding], names: Mapping[str, str]) -> list[Finding]:
-    """Return the findings in order, with one for all ``robots`` in place of those that differ only in
-    the robot.
+    """Return the findings in order, one for all ``robots`` of those that differ only in the robot.
 
-    ``names`` maps each name of a robot in texts (its name, its prefix) to the robot.
-    """
+    ``names`` maps each name of a robot in texts (its name, its prefix) to the robot."""
     return [first for first, _ in with_members(findings, names)]
 
 

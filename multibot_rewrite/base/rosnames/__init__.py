@@ -152,6 +152,7 @@ def remapped_node(node: str, namespace: str, rules: Iterable[RemapRule]) -> tupl
 
 
 def _first_target(rules: Iterable[RemapRule], keys: tuple[str, ...], node: str) -> str:
+    """Return the right side of the first rule for the node with one of the keys on its left, or ""."""
     return next((r.target for r in rules if r.source in keys and r.node in ("", node)), "")
 
 
@@ -183,7 +184,8 @@ def bind(node: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
 
 
 def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
-    """Return the name that ``name`` of a bound node becomes; UsageError where rcl refuses the name.
+    """Return the name that a name of a bound node becomes; UsageError where rcl refuses the name.
+
     ``kind`` is ``topic`` or ``service``. One step only: the result is not remapped again."""
     _raise_fault(f"{kind} name", name, check_topic_name(name))
     full = expand(name, bound.namespace, bound.node)

@@ -46,10 +46,10 @@ def check_topic_name(name: str) -> NameFault | None:
     if not name:
         return NameFault("it is empty", 0)
     if name[0] in _DIGITS:
-        return _digit_first(name, 0)
+        return _digit_first_fault(name, 0)
     if name.endswith("/"):
-        return _slash_last(name)
-    return _braces_and_letters(name) or _first_letters(name)
+        return _slash_last_fault(name)
+    return _brace_or_letter_fault(name) or _part_start_fault(name)
 
 
 def check_name_in_code(name: str) -> NameFault | None:
@@ -59,28 +59,28 @@ def check_name_in_code(name: str) -> NameFault | None:
 
 def check_full_name(name: str) -> NameFault | None:
     """Return the fault of a fully qualified topic or service name, or None."""
-    return _full_form(name) or _too_long(name, MAX_TOPIC)
+    return _full_name_fault(name) or _length_fault(name, MAX_TOPIC)
 
 
 def check_namespace(namespace: str) -> NameFault | None:
     """Return the fault of a namespace, or None: ``/``, or absolute without a slash at the end."""
     if namespace == "/":
         return None
-    return _full_form(namespace) or _too_long(namespace, MAX_NAMESPACE)
+    return _full_name_fault(namespace) or _length_fault(namespace, MAX_NAMESPACE)
 
 
 def check_node_name(name: str) -> NameFault | None:
     """Return the fault of a node's name, or None: it is one token of at most 255 characters."""
     if name.isascii() and name.isidentifier():
-        return _too_long(name, MAX_NODE)
+        return _length_fault(name, MAX_NODE)
     if not name:
         return NameFault("it is empty", 0)
-    fault = _letters(name, _TOKEN, "a letter, a digit or an underscore")
-    return fault or _digit_first(name, 0)
+    fault = _letter_fault(name, _TOKEN, "a letter, a digit or an underscore")
+    return fault or _digit_first_fault(name, 0)
 
 
-def _braces_and_letters(name: str) -> NameFault | None:
-    """Check that braces are closed and not nested, and hold one token; ``~`` only leads."""
+def _brace_or_letter_fault(name: str) -> NameFault | None:
+    """Return the fault of a name whose braces or letters are wrong, or None; ``~`` only leads."""
     opened = -1
     for at, letter in enumerate(name):
         if opened >= 0:
@@ -102,17 +102,18 @@ def _braces_and_letters(name: str) -> NameFault | None:
     return _fault_at(name, opened, "is not closed") if opened >= 0 else None
 
 
-def _first_letters(name: str) -> NameFault | None:
+def _part_start_fault(name: str) -> NameFault | None:
+    """Return the fault of ``~`` without a slash behind it, or of a part that begins with a digit."""
     # Two characters, as "~a", pass: rcl never looks at the last one here.
     if name[0] == "~" and len(name) > 2 and name[1] != "/":
         return _fault_at(name, 1, "follows '~', which only a slash may follow")
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == "/" and following in _DIGITS:
-            return _digit_first(name, at)
+            return _digit_first_fault(name, at)
     return None
 
 
-def _full_form(name: str) -> NameFault | None:
+def _full_name_fault(name: str) -> NameFault | None:
     """Return the fault of a fully qualified name, its length aside."""
     if _FULL.fullmatch(name):
         return None
@@ -121,22 +122,22 @@ def _full_form(name: str) -> NameFault | None:
     if name[0] != "/":
         return _fault_at(name, 0, "is not the slash that a fully qualified name starts with")
     if name.endswith("/"):
-        return _slash_last(name)
-    return _letters(name, _TOKEN | {"/"}, "a letter, a digit, an underscore or a slash") or (
-        _pairs(name)
+        return _slash_last_fault(name)
+    return _letter_fault(name, _TOKEN | {"/"}, "a letter, a digit, an underscore or a slash") or (
+        _slash_or_digit_fault(name)
     )
 
 
-def _pairs(name: str) -> NameFault | None:
+def _slash_or_digit_fault(name: str) -> NameFault | None:
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == following == "/":
             return _fault_at(name, at, "is a slash right after a slash")
         if letter == "/" and following in _DIGITS:
-            return _digit_first(name, at)
+            return _digit_first_fault(name, at)
     return None
 
 
-def _letters(name: str, allowed: frozenset[str], words: str) -> NameFault | None:
+def _letter_fault(name: str, allowed: frozenset[str], words: str) -> NameFault | None:
     for at, letter in enumerate(name):
         if letter not in allowed:
             return _fault_at(name, at, f"is not {words}")
@@ -147,15 +148,15 @@ def _fault_at(name: str, at: int, reason: str) -> NameFault:
     return NameFault(f"character {at + 1}, {name[at]!r}, {reason}", at)
 
 
-def _digit_first(name: str, at: int) -> NameFault:
+def _digit_first_fault(name: str, at: int) -> NameFault:
     return _fault_at(name, at, "is a digit, with which no part of a name starts")
 
 
-def _slash_last(name: str) -> NameFault:
+def _slash_last_fault(name: str) -> NameFault:
     return _fault_at(name, len(name) - 1, "is a slash at the end")
 
 
-def _too_long(name: str, limit: int) -> NameFault | None:
+def _length_fault(name: str, limit: int) -> NameFault | None:
     if len(name) <= limit:
         return None
     # rcl points at the last character that is allowed.

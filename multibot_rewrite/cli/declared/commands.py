@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every command line of the package, read from its page ``NAME.txt``: what it takes, what it is for,
-what its exit codes mean.
+"""Reads every command line of the package from its page ``NAME.txt``.
 
-A line that is not indented begins a part: ``key: text``, or ``[title]`` with the options of a group,
-each ``KIND NAME METAVAR ...: what it is for``. What many commands take is in ``shared.txt``: its
-groups by their titles alone, its options by ``--name``, with a text of their own behind it or not.
-"""
+A line that is not indented begins a part: ``key: text``, or ``[title]`` with the options of a
+group, each ``KIND NAME METAVAR ...: what it is for``. What many commands take is in
+``shared.txt``: its groups by their titles alone, its options by ``--name``, with a text of their
+own behind it or not."""
 
 from __future__ import annotations
 
@@ -49,10 +48,10 @@ def read_command(name: str) -> Command:
     fields: dict[str, str] = {}
     groups: list[OptionGroup] = []
     examples: tuple[Example, ...] = ()
-    for head, below in _page(name):
+    for head, below in _page_parts(name):
         key, _, text = head.partition(":")
         if head.startswith("["):
-            groups.append(_group(head.strip("[]"), below))
+            groups.append(_parse_group(head.strip("[]"), below))
         elif key == "examples":
             examples = tuple(Example(*it.partition("    # ")[::2]) for it in below if it)
         else:
@@ -74,42 +73,42 @@ def read_command(name: str) -> Command:
     )
 
 
-def _page(name: str) -> Iterator[_Part]:
+def _page_parts(name: str) -> Iterator[_Part]:
     path = os.path.join(os.path.dirname(__file__), f"{name}.txt")
     with open(path, encoding="utf-8") as file:
         text = file.read()
     for word, said in _KNOWN.items():
         text = text.replace(f"{{{word}}}", said)
-    return _parts(text.splitlines())
+    return _split_parts(text.splitlines())
 
 
-def _parts(lines: Sequence[str]) -> Iterator[_Part]:
+def _split_parts(lines: Sequence[str]) -> Iterator[_Part]:
     """Yield each line without indent, with the lines below it, two spaces less indented."""
     starts = [at for at, it in enumerate(lines) if it.strip() and not it.startswith(" ")]
     for start, end in pairwise((*starts, len(lines))):
         yield lines[start], [it[2:] for it in lines[start + 1 : end]]
 
 
-def _group(title: str, lines: Sequence[str]) -> OptionGroup:
+def _parse_group(title: str, lines: Sequence[str]) -> OptionGroup:
     """Return a group of options; one with a title only is the shared group."""
-    options = tuple(_option(" ".join((it, *more))) for it, more in _parts(lines))
-    return OptionGroup(title, options) if options else _shared()[title]
+    options = tuple(_parse_option(" ".join((it, *more))) for it, more in _split_parts(lines))
+    return OptionGroup(title, options) if options else _shared_groups()[title]
 
 
-def _option(text: str) -> Option:
+def _parse_option(text: str) -> Option:
     """Return the option that a line declares; one without a kind is shared."""
     head, _, about = " ".join(text.split()).partition(": ")
     kind, *words = head.split()
     if words or kind in KINDS:
         return KINDS[kind](about, *words)
-    every = (it for group in _shared().values() for it in group.options)
+    every = (it for group in _shared_groups().values() for it in group.options)
     found = next(it for it in every if kind in it.names)
     return found._replace(help=about) if about else found
 
 
 @cache
-def _shared() -> Mapping[str, OptionGroup]:
-    groups = (_group(head.strip("[]"), below) for head, below in _page("shared"))
+def _shared_groups() -> Mapping[str, OptionGroup]:
+    groups = (_parse_group(head.strip("[]"), below) for head, below in _page_parts("shared"))
     return {it.title: it for it in groups}
 
 

@@ -124,7 +124,7 @@ def launch(about: str, name: str, metavar: str) -> Option:
 
 
 def launch_words(about: str, name: str, metavar: str) -> Option:
-    """Return an option with a launch file and its arguments as words."""
+    """Return an option that takes a launch file and its arguments."""
     return _option(name, about, metavar.replace("_", " "), nargs="+", default=[])
 
 

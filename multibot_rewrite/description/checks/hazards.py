@@ -27,6 +27,7 @@ from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import IN_FRONT
 from multibot_rewrite.description.rewriters.model_namespaces import INCLUDE, MODEL, namespace_of
 from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
+from multibot_rewrite.description.rewriters.remap_rules import relative
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, library_key
 from multibot_rewrite.description.steps.collect import SRDF, Host, Inventory
@@ -65,8 +66,7 @@ def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
 
 
 def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Yield parameters that the consumer puts before names: they cannot hold a postfix. What an
-    argument made of the robot's name needs none."""
+    """Yield parameters that plugins put in front of names, which cannot hold a postfix."""
     if naming.affix == PREFIX or "sensor" not in naming.separators:
         return
     hint = "use --affix prefix"
@@ -74,11 +74,11 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         own = any((it.kind, it.text) in naming.own for it in names)
         if claim.site.form in IN_FRONT and not own:
             yield about(claim, "MB422", _in_front(claim.site.path, claim.value), hint)
-    for section, host in _known_hosts(inventory):
+    for section, host in _known_plugins(inventory):
         for site in (it for it in section.sites if it.form in IN_FRONT and it.default):
             if host.element.find(site.path) is None:
                 message = _in_front(site.path, site.default)
-                yield _host(host, "MB422", message, hint)
+                yield _at_host(host, "MB422", message, hint)
 
 
 def _in_front(path: str, value: str) -> str:
@@ -107,7 +107,7 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 
 def shared_below(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Yield relative names that all robots are said to share, and that the namespace of each moves."""
+    """Yield relative names that should be shared, but are below each robot's namespace."""
     shared = naming.shared_topics - OF_EVERYBODY
     if not shared or naming.topics != NAMESPACE:
         return
@@ -116,19 +116,19 @@ def shared_below(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         for it in names if claim.site.namespaced else ():
             if it.kind in TOPIC_KINDS and it.text in shared:
                 yield about(claim, "MB430", f"{it.text!r} {says}", f"write /{it.text}")
-    for section, host in _known_hosts(inventory):
+    for section, host in _known_plugins(inventory):
         rules = (split_remap(text_of(it)) for it in host.element.iter("remapping", "argument"))
         ruled = {it.source.strip("/") for it in rules if it}
         left = (it.name for it in section.wired if not it.is_moved)
         for name in (it for it in left if it in shared and it not in ruled):
             hint = f"write the rule {name}:=/{name}"
-            yield _host(host, "MB430", f"{name!r} of {section.names[0]} {says}", hint)
+            yield _at_host(host, "MB430", f"{name!r} of {section.names[0]} {says}", hint)
 
 
 def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Yield consumers that find things by name in the whole world, where no robot's name is added."""
     declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
-    for section, host in _known_hosts(inventory):
+    for section, host in _known_plugins(inventory):
         kind = section.unique
         # Hardware looks for the sensors that it is given, not for all that the robot has.
         element = host.element
@@ -139,27 +139,30 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
                 "it may find that of another robot"
             )
             hint = f"use --layout both, which renames {kind}s for each robot"
-            yield _host(host, "MB425", message, hint)
+            yield _at_host(host, "MB425", message, hint)
 
 
 def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Yield plugins whose remap rules hold for the whole process: only namespaces separate robots
-    then (gazebo_ros2_control_plugin.cpp and ign_ros2_control_plugin.cpp set the global arguments;
-    since Jazzy each manager has its own, gz_ros2_control_plugin.cpp ``options.arguments``)."""
+    """Yield plugins with remap rules for the whole process, where only namespaces help."""
+    # Both gazebo_ros2_control_plugin.cpp and ign_ros2_control_plugin.cpp set the global arguments;
+    # since Jazzy each manager has its own (gz_ros2_control_plugin.cpp, ``options.arguments``).
     if not controller_way(inventory.release).process_wide:
         return
-    wide = [(section, host) for section, host in _known_hosts(inventory) if section.process_wide]
+    wide = [(section, host) for section, host in _known_plugins(inventory) if section.process_wide]
     if naming.topics != NAMESPACE:
         for section, host in wide:
             plugin = section.names[0]
             message = f"remap rules of {plugin} apply to the whole process, also to other robots"
             hint = "with several robots in one Gazebo use --topics namespace"
-            yield _host(host, "MB426", message, hint)
+            yield _at_host(host, "MB426", message, hint)
         return
-    inside = {host.element for _, host in wide}
+    inside = {host.element: section for section, host in wide}
     for claim in inventory.claims if inside else ():
         rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
-        if rule is None or inside.isdisjoint(claim.element.iterancestors()):
+        plugin_element = next((it for it in claim.element.iterancestors() if it in inside), None)
+        if rule is None or plugin_element is None:
+            continue
+        if relative(rule, plugin_element, inside[plugin_element], naming):
             continue
         if rule.target.startswith("/"):
             message = f"{claim.value!r} applies to the whole process, also to nodes of other robots"
@@ -182,7 +185,7 @@ def one_description(
 
 def world_systems(inventory: Inventory) -> Iterator[Problem]:
     """Yield systems of the whole world that each robot loads again; in a world they are right."""
-    for section, host in _known_hosts(inventory):
+    for section, host in _known_plugins(inventory):
         above = host.element.getparent()
         if WORLD not in section.opens or (above is not None and above.tag in (WORLD, "gui")):
             continue
@@ -200,7 +203,7 @@ def system_key(plugin: _Element) -> str:
 
 def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """Yield plugins whose code looks for a literal name: under another one they find nothing."""
-    for section, host in _known_hosts(inventory):
+    for section, host in _known_plugins(inventory):
         for entry in section.hardwired:
             kind, _, name = entry.partition(":")
             path, _, name = name.removeprefix("{").rpartition("}")
@@ -212,7 +215,7 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
                 bare = "the name is fixed in its code: use --layout tf-per-robot or frame-prefix"
                 alone = kind in (section.unique, "light")  # renamed in every layout
                 given = f"write an empty <{path}> for it and use --affix prefix"
-                yield _host(host, "MB428", message, given if path else ALONE if alone else bare)
+                yield _at_host(host, "MB428", message, given if path else ALONE if alone else bare)
 
 
 def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
@@ -227,18 +230,18 @@ def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
             yield about(sensors[it], "MB428", message, hint)
 
 
-def _host(host: Host, code: str, message: str, hint: str) -> Problem:
+def _at_host(host: Host, code: str, message: str, hint: str) -> Problem:
     return Problem(host.element, message, None, hint, (), code)
 
 
-def _known_hosts(inventory: Inventory) -> Iterator[tuple[PluginDefinition, Host]]:
+def _known_plugins(inventory: Inventory) -> Iterator[tuple[PluginDefinition, Host]]:
     for host in inventory.hosts:
         if host.node.section is not None:
             yield host.node.section, host
 
 
 def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """Yield renamed frames that an SRDF fixes its robot to."""
+    """Yield renamed frames to which an SRDF fixes the robot."""
     for claim, spelling in zip(inventory.claims, renames.values, strict=True):
         if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
             continue
@@ -281,7 +284,7 @@ GAZEBO = {"humble": "Fortress", "jazzy": "Harmonic", "kilted": "Ionic", "lyrical
 def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Yield namespaces of models that the release's Gazebo does not read."""
     release = tree.definitions.release
-    for model in [] if _are_read(tree) else _with_namespace(inventory):
+    for model in [] if _reads_model_namespaces(tree) else _with_namespace(inventory):
         who = f"Gazebo {GAZEBO.get(release, 'of main')} ({release})"
         message = f"{who} does not read the namespace {namespace_of(model)!r} of {_name_of(model)}"
         yield Problem(model, message, None, "set the topics of its plugins", (), IGNORED)
@@ -289,11 +292,11 @@ def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 
 def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Yield namespaces of models that plugins of theirs put in front of their relative topics."""
-    models = _with_namespace(inventory) if _are_read(tree) else []
+    models = _with_namespace(inventory) if _reads_model_namespaces(tree) else []
     release = tree.definitions.release
     below = [
         host.element
-        for section, host in (_known_hosts(inventory) if models else ())
+        for section, host in (_known_plugins(inventory) if models else ())
         if section.model_namespace and has_release(section.model_namespace, release)
     ]
     for model in models:
@@ -304,7 +307,7 @@ def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             yield Problem(model, message, None, "absolute topics hold everywhere", (), IN_USE)
 
 
-def _are_read(tree: Tree) -> bool:
+def _reads_model_namespaces(tree: Tree) -> bool:
     sections = tree.definitions.find("element", "sdf.model")
     return any(has_release(it.model_namespace, tree.definitions.release) for it in sections)
 

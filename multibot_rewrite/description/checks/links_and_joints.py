@@ -21,8 +21,7 @@ TOLERANCE = 1e-3
 
 
 class Inertial(NamedTuple):
-    """A link's ``<inertial>``. ``moments`` are in the order of ``MOMENTS``; like ``mass`` they are
-    None where they are missing or not numbers."""
+    """A link's ``<inertial>``, moments as in ``MOMENTS``; what is missing or no number is None."""
 
     element: _Element
     mass: float | None
@@ -81,7 +80,7 @@ def read_robot(root: _Element) -> Robot:
     below = lists_by_key((it.parent, it) for it in joints if it.parent)
     return Robot(
         *(links, joints, _firsts(links), _firsts(joints), above, below),
-        _bodies(links, above, below, kept_joints(root)),
+        _body_by_link(links, above, below, kept_joints(root)),
     )
 
 
@@ -108,6 +107,7 @@ def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
 
 
 def _joint(element: _Element) -> Joint:
+    """Return a joint of a URDF as a record."""
     return Joint(
         element.get("name", ""),
         element.get("type", ""),
@@ -118,12 +118,13 @@ def _joint(element: _Element) -> Joint:
     )
 
 
-def _bodies(
+def _body_by_link(
     links: Iterable[Link],
     above: Mapping[str, Sequence[Joint]],
     below: Mapping[str, Sequence[Joint]],
     kept: frozenset[str],
 ) -> dict[str, str]:
+    """Return for each link the first link of the body that fixed joints make it part of."""
     body = {it.name: it.name for it in links if it.name not in above}
     todo = list(body)
     while todo:
@@ -137,7 +138,7 @@ def _bodies(
 
 
 def weighs(robot: Robot) -> bool:
-    """Return whether any of its links has a mass. What is no number counts as one."""
+    """Return whether any link has a mass; a value that is not a number counts as one."""
     masses = (it.inertial.mass for it in robot.links if it.inertial)
     return any(it is None or it > 0 for it in masses)
 
@@ -165,7 +166,7 @@ def is_tree(robot: Robot) -> bool:
 
 
 def loops(robot: Robot) -> list[list[Joint]]:
-    """Return loops of joints, one of those that share links; a joint from a link to itself is none."""
+    """Return the loops of joints; of loops that share links only one."""
     rest = _not_of_a_tree(robot)
     done: set[str] = set()
     found = []
@@ -174,7 +175,7 @@ def loops(robot: Robot) -> list[list[Joint]]:
         name = start
         while name not in done:
             done.add(name)
-            path[name] = next(it for it in robot.above[name] if _ties(it) and it.parent in rest)
+            path[name] = next(it for it in robot.above[name] if _is_edge(it) and it.parent in rest)
             name = path[name].parent
         if name in path:
             found.append(list(path.values())[list(path).index(name) :][::-1])
@@ -183,17 +184,17 @@ def loops(robot: Robot) -> list[list[Joint]]:
 
 def _not_of_a_tree(robot: Robot) -> dict[str, None]:
     """Return the links in loops and below them, in document order."""
-    open_ = {name: sum(map(_ties, joints)) for name, joints in robot.above.items()}
+    open_ = {name: sum(map(_is_edge, joints)) for name, joints in robot.above.items()}
     ready = [it for it in robot.below if not open_.get(it)]
     for name in ready:  # grows
-        for joint in filter(_ties, robot.below.get(name, ())):
+        for joint in filter(_is_edge, robot.below.get(name, ())):
             open_[joint.child] -= 1
             if not open_[joint.child]:
                 ready.append(joint.child)
     return {name: None for name, count in open_.items() if count}
 
 
-def _ties(joint: Joint) -> bool:
+def _is_edge(joint: Joint) -> bool:
     return bool(joint.parent) and bool(joint.child) and joint.parent != joint.child
 
 

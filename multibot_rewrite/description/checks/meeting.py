@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all robots of a description would share, by the second reading of what was written; and what a
-rewrite may be called for it: verified, or rewritten and not verified, and why."""
+"""Names that all robots of a description share, and why a rewrite is not verified."""
 
 from __future__ import annotations
 
@@ -57,7 +56,7 @@ Said = TypeVar("Said", Problem, Finding)
 
 
 def said_of(robot: str, found: Iterable[Said]) -> Iterator[Said]:
-    """Yield what is found of any robot with the name of this one."""
+    """Return findings about a placeholder robot with the name of this one in its place."""
     for it in found:
         message, hint = it.message.replace(TWIN, robot), it.hint.replace(TWIN, robot)
         yield it._replace(message=message, hint=hint)
@@ -77,8 +76,7 @@ def shared_by_both(
     naming: Naming,
     definitions: Definitions,
 ) -> Iterator[Problem]:
-    """Yield the names that these two robots would share, but not every robot, as ``arm_left`` of ``b``
-    and ``arm`` of ``left_b``."""
+    """Yield names that two robots share, not all: ``arm_left`` of ``b``, ``arm`` of ``left_b``."""
     twin = _unused_robot_name(document)
     named = {it: read(fill(pieces, it), document.file, definitions).names for it in (*robots, twin)}
     every = {(it.kind, it.name) for it in meeting.same_for_all(named.pop(twin), twin, naming)}
@@ -138,7 +136,7 @@ def _changed(
 ) -> Iterator[Problem]:
     """Yield the names that were shared or matched before the rewrite, and are not after it."""
     images = any(meeting.CAMERA_INFO in it.name for it in reading.names)
-    if b":=" not in document.source and not images and not _alike(reading, robot):
+    if b":=" not in document.source and not images and not _differ_in_place_only(reading, robot):
         return
     before = read_tree(document.root, definitions)
     for lost in meeting.lost_rules(before, reading):
@@ -165,7 +163,7 @@ def _changed(
         yield Problem(it.element_in(document.root), message, None, hint, (), ELSEWHERE)
 
 
-def _alike(reading: Reading, robot: str) -> bool:
+def _differ_in_place_only(reading: Reading, robot: str) -> bool:
     """Return whether topics differ only in the place of the robot's name."""
     every = (*reading.names, *reading.other_ends)
     topics = {it.name for it in every if it.kind in (TOPIC, SERVICE)}

@@ -83,13 +83,16 @@ def unclaimed_mentions(
     tree: Tree,
     usual: Collection[str] = (),
 ) -> list[Mention]:
-    """Return each unclaimed value that is one of ``names`` or holds one as a list item, path
-    segment, scope or side of a remap rule, or is a ``usual`` frame or topic of tf; ``values`` are
-    all of ``slot_values``. Values with a ``keep`` site are no mention, nor what a plugin does not
-    read."""
+    """Return each unclaimed value that is or holds one of ``names``, or is a ``usual`` one.
+
+    A name is held as a list item, path segment, scope or side of a remap rule. ``values`` are
+    all of ``slot_values``. Those with a ``keep`` site, and those that a plugin does not read,
+    are no mention."""
     if not (names or usual):
         return []
-    telling = _telling(values, frozenset(names)) | {it: it for it in {*usual}.intersection(values)}
+    telling = _values_with_names(values, frozenset(names)) | {
+        it: it for it in {*usual}.intersection(values)
+    }
     count = Counter(filter(telling.__contains__, values))
     claimed = Counter([claim.value for claim in inventory.claims])
     suspects = {value for value in telling if count[value] > claimed[value]}
@@ -106,9 +109,9 @@ def unclaimed_mentions(
 
 
 def _is_unread(element: etree._Element, attribute: str, tree: Tree, nodes: Nodes) -> bool:
-    """Return whether it is text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or is
-    in a parameter that a plugin or hardware reads in no release of the ROS that loads it. Then all
-    that it reads is known. Nothing reads the call of a macro that xacro has left."""
+    """Return whether no consumer reads a value."""
+    # That is text that urdfdom skips (model.cpp, link.cpp, joint.cpp), a parameter that no release
+    # of a plugin or hardware reads, and the call of a macro that xacro has left.
     if any(map(is_macro_call, (element, *element.iterancestors()))):
         return True
     parent = element.getparent()
@@ -136,15 +139,15 @@ def _is_unread(element: etree._Element, attribute: str, tree: Tree, nodes: Nodes
 
 
 def is_macro_call(element: etree._Element) -> bool:
-    """Return whether xacro has left it: an old call without ``xacro:``, of a macro with a parent and
-    an origin. No parser of a URDF reads an attribute ``parent`` there."""
+    """Return whether it is a macro call without ``xacro:`` that xacro has left."""
+    # No parser of a URDF reads an attribute ``parent`` there.
     above = element.getparent()
     is_top = above is not None and above.tag == "robot"
     return is_top and "parent" in element.attrib and element.find("origin") is not None
 
 
 def _is_meant(element: etree._Element, attribute: str, value: str) -> bool:
-    """Return whether it is a usual frame at a key for frames. A topic of tf is meant anywhere."""
+    """Return whether a value is a tf topic, or a usual frame at a key for frames."""
     return value.startswith("/") or _FRAME_KEY.search(attribute or str(element.tag)) is not None
 
 
@@ -155,8 +158,8 @@ def usual_names(naming: Naming) -> frozenset[str]:
     return frozenset((*topics, *frames))
 
 
-def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
-    """Return the values that are or hold one of the names, with that name."""
+def _values_with_names(values: list[str], names: frozenset[str]) -> dict[str, str]:
+    """Return the values that are or hold one of the names, each with that name."""
     different = set(values)
     telling = {value: value for value in names & different}
     others = [value for value in different - names if value.strip(_NUMERIC)]
@@ -175,7 +178,7 @@ def mentioned(value: str, names: frozenset[str]) -> str:
 
 def _name_in(text: str, names: frozenset[str]) -> str:
     """Return a name that a text holds; empty if it has none."""
-    for it in _looks(names):
+    for it in _splitters(names):
         words = it.split(text)
         if not names.isdisjoint(words):
             return next(word for word in words if word in names)
@@ -183,7 +186,7 @@ def _name_in(text: str, names: frozenset[str]) -> str:
 
 
 @lru_cache(maxsize=4)
-def _looks(names: frozenset[str]) -> tuple[re.Pattern[str], ...]:
+def _splitters(names: frozenset[str]) -> tuple[re.Pattern[str], ...]:
     """Return the patterns that split a text into words without cutting one of the names."""
     return _BETWEEN if any(map(_PARTED.search, names)) else _BETWEEN[-1:]
 
@@ -220,7 +223,7 @@ def _unclaimed(
 
 
 def _has_one(element: etree._Element, suspects: set[str]) -> bool:
-    """Return whether one of an element's values or texts is suspect; a quick test."""
+    """Return whether one of an element's values or texts is suspect, for a quick test."""
     if not suspects.isdisjoint(element.values()):
         return True
     texts = [element.text, *[it.tail for it in element]] if len(element) else [element.text]

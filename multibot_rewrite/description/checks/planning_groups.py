@@ -70,8 +70,8 @@ def chain(robot: Robot, base: str, tip: str) -> list[str] | None:
 
 def joints_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
     """Return the joints of a group and of its subgroups; a group may hold itself."""
-    members = (it for group in _within(name, groups) for it in _members(groups, group))
-    return {joint for member in members for joint in _joints(member, robot)}
+    members = (it for group in _within(name, groups) for it in _members_of_group(groups, group))
+    return {joint for member in members for joint in _joints_of_member(member, robot)}
 
 
 def is_whole(name: str, groups: Groups) -> bool:
@@ -83,17 +83,17 @@ def _within(name: str, groups: Groups) -> list[str]:
     """Return the names of a group and its subgroups, declared or not."""
     found = [name]
     for group in found:  # grows
-        inner = (text_of(it) for it in _members(groups, group) if it.tag == "group")
+        inner = (text_of(it) for it in _members_of_group(groups, group) if it.tag == "group")
         found += (it for it in dict.fromkeys(inner) if it not in found)
     return found
 
 
-def _members(groups: Groups, name: str) -> Iterator[_Element]:
+def _members_of_group(groups: Groups, name: str) -> Iterator[_Element]:
     group = groups.get(name)
     return iter(()) if group is None else group.iterchildren("*")
 
 
-def _joints(member: _Element, robot: Robot) -> Collection[str]:
+def _joints_of_member(member: _Element, robot: Robot) -> Collection[str]:
     if member.tag == "joint":
         return (text_of(member),)
     if member.tag == "link":
@@ -112,4 +112,4 @@ def links_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
     """Return the links of a group: those that its joints move, and those it names itself."""
     joints = joints_of(name, groups, robot)
     moved = {robot.joint[it].child for it in joints if it in robot.joint}
-    return moved.union(text_of(it) for it in _members(groups, name) if it.tag == "link")
+    return moved.union(text_of(it) for it in _members_of_group(groups, name) if it.tag == "link")

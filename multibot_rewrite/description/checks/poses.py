@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rotations, an ``<origin>`` as it is written, and where the links of a URDF are, with every joint
-at 0.
+"""Rotations, the pose of an ``<origin>``, and the poses of links with every joint at 0.
 
 Sources: urdfdom_headers, pose.h (``setFromRPY``, ``setFromQuaternion``, ``normalize``): yaw is
 applied last, a quaternion is divided by its length, and one without a length is no rotation;

@@ -37,7 +37,7 @@ def fault(
     hint: str = "",
     level: str = "",
 ) -> Problem:
-    """Return a problem that the rule for the kind ``word`` reports."""
+    """Return a problem for the rule that reports the kind ``word``."""
     return Problem(element, message, attribute, hint, (), word, level)
 
 

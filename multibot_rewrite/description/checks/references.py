@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that nothing declares, that are ambiguous, or that are declared twice; and a xacro's arguments:
-those that no file knows, those that reach one of a frame and its link."""
+"""Names that are undeclared, ambiguous or declared twice, and arguments of a xacro that do harm."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -70,7 +69,7 @@ def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Pro
         found = (kind for kind in sorted(CLOSED_KINDS) if part.text in declared.get(kind, ()))
         other = next(found, "")
         message += f"which is a {other}" if other else "which is not declared"
-        code, hint = _code(site, part), guesses.hint(part.text, known)
+        code, hint = _undeclared_code(site, part), guesses.hint(part.text, known)
         # A description is rejected for such a name in a joint, and in most of ros2_control.
         of_system = site.section == "element ros2_control" and not site.path.startswith("hardware/")
         is_fatal = of_system or site.section == "element joint"
@@ -78,7 +77,7 @@ def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Pro
         yield about(claim, code, message, hint)._replace(level=WARNING if mild else "")
 
 
-def _code(site: SiteRow, part: NamePart) -> str:
+def _undeclared_code(site: SiteRow, part: NamePart) -> str:
     if site.form in ("scoped", "member"):
         return "MB219"  # Only SDF has scopes.
     other = JOINT if part.kinds[0] == "joint" else _LINK
@@ -159,8 +158,9 @@ ARGUMENT_MISSES_REFERENCE = declare(
 def missed_by_arguments(
     inventory: Inventory, renames: "RenameMap", plain: Mapping[tuple[str, str], str], robot: str
 ) -> Iterator[Problem]:
-    """Yield frames that arguments do not rename: ``plain`` maps names without the arguments (kind
-    and text) to those that ``robot`` has with them."""
+    """Yield frames of which arguments rename only the frame or only its link.
+
+    ``plain`` maps (kind, text) without the arguments to the text that ``robot`` has with them."""
     links = inventory.declared["link"]
     pairs = zip(inventory.claims, inventory.names, strict=True) if robot else ()
     for claim, names in pairs:

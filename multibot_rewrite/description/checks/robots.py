@@ -47,7 +47,7 @@ def taken_names(
 def _shared_names(
     inventory: Inventory, renames: RenameMap, robots: Iterable[str]
 ) -> Iterator[Problem]:
-    """Yield names that become a shared one: ``base`` where all robots share ``robot1/base``."""
+    """Yield names that become a shared name: ``base``, if ``robot1/base`` is shared."""
     naming = renames.naming
     shared = dict.fromkeys(FRAME_KINDS, naming.shared_frames)
     shared |= dict.fromkeys(TOPIC_KINDS, naming.shared_topics)
@@ -63,8 +63,7 @@ def _shared_names(
 
 
 def _unchanged_names(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, Claim]]:
-    """Yield declared names that stay as they are, with those of an SRDF's URDF, and names that are used
-    and declared nowhere."""
+    """Yield (kind, name, claim) of names that stay as they are, and of undeclared ones."""
     for kind, declared in inventory.declared.items():
         same = (pair for pair in declared.items() if not renames.changes(kind, pair[0]))
         yield from ((kind, name, claim) for name, claim in same)
@@ -112,7 +111,7 @@ def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[
             hint = "give --undo the robot and the options that the file was made with"
             if robot in name:
                 hint += ", and --xacro if an argument of it made the name"
-            return [_other_robot(inventory, claim.start, message, hint)]
+            return [_other_robot_finding(inventory, claim.start, message, hint)]
     return []
 
 
@@ -127,11 +126,11 @@ def other_urdf(
             if changes and removal(naming, robot, kind, name) is None:
                 message = f"{kind} {name!r} of the URDF does not have the name of {robot}"
                 hint = "give --urdf the URDF as it was rewritten with the same options"
-                return [_other_robot(inventory, 0, message, hint)]
+                return [_other_robot_finding(inventory, 0, message, hint)]
     return []
 
 
-def _other_robot(inventory: Inventory, offset: int, message: str, hint: str) -> Finding:
+def _other_robot_finding(inventory: Inventory, offset: int, message: str, hint: str) -> Finding:
     return finding(inventory.document, offset, strip_other_robot.code, ERROR, message, hint)
 
 

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How large the simple shapes of links are: boxes, cylinders and spheres, and how far a robot reaches
-with them. A mesh is a file: ``mesh_box`` reads it; for the reach its place alone counts, as that of a
-link without a shape. How large a Collada mesh is, as RViz and Gazebo show it.
+"""How large the boxes, cylinders, spheres and Collada meshes of links are, and a robot's reach.
 
 ``<unit>`` counts, ``<up_axis>`` does not: RViz has Assimp ignore it (assimp_loader.cpp sets
-AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION), and ColladaLoader.cc of gz-common does not read it.
-Corners that no triangle has count too: the box may be larger than what is seen."""
+AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION), and ColladaLoader.cc of gz-common does not read
+it. Corners without a triangle count: the box may be too large. For the reach a mesh counts by
+its place."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import reduce
@@ -48,7 +47,7 @@ class Extent(NamedTuple):
 
 def extent_of(shape: _Element, pose: Pose) -> Extent | None:
     """Return the box around a box, cylinder or sphere at a pose; None for other shapes."""
-    half = _half(shape)
+    half = _half_size(shape)
     if half is None:
         return None
     if shape.tag == "sphere" or pose.matrix is STRAIGHT:
@@ -64,7 +63,7 @@ def placed_box(box: Extent, pose: Pose) -> Extent:
     return Extent(minus(centre, reach), plus(centre, reach))
 
 
-def _half(shape: _Element) -> Vector | None:
+def _half_size(shape: _Element) -> Vector | None:
     """Return half of a shape's size along its own axes."""
     if shape.tag == "box":
         size = vector(_written_size(shape, "size"))
@@ -110,24 +109,25 @@ def _vector_of(values: Iterable[float]) -> Vector:
 
 def way_out(shape: _Element, start: Vector, along: Vector) -> float:
     """Return the distance from a point inside a shape to its face, in its frame; 0 if outside."""
-    half = _half(shape)
+    half = _half_size(shape)
     if half is None:
         return 0.0
     if shape.tag == "sphere":
-        return _round_way(start, along, half[0])
+        return _to_round_face(start, along, half[0])
     if shape.tag == "cylinder":
-        flat = _round_way((start[0], start[1], 0.0), (along[0], along[1], 0.0), half[0])
-        return min(flat, _flat_way(start[2], along[2], half[2]))
-    return min(map(_flat_way, start, along, half))
+        flat = _to_round_face((start[0], start[1], 0.0), (along[0], along[1], 0.0), half[0])
+        return min(flat, _distance_to_flat_face(start[2], along[2], half[2]))
+    return min(map(_distance_to_flat_face, start, along, half))
 
 
-def _flat_way(start: float, along: float, half: float) -> float:
+def _distance_to_flat_face(start: float, along: float, half: float) -> float:
     if abs(start) > half:
         return 0.0
     return inf if along == 0 else (half - start * (1 if along > 0 else -1)) / abs(along)
 
 
-def _round_way(start: Vector, along: Vector, radius: float) -> float:
+def _to_round_face(start: Vector, along: Vector, radius: float) -> float:
+    """Return the distance from a point inside to the round face; 0 if outside."""
     rest = radius * radius - dot(start, start)
     square, middle = dot(along, along), dot(start, along)
     if rest < 0:
@@ -136,24 +136,23 @@ def _round_way(start: Vector, along: Vector, radius: float) -> float:
 
 
 def reach_of(root: _Element) -> float:
-    """Return the radius in metres of the upright cylinder around the root link with the robot's
-    collisions, or its visuals, with every joint at 0; 0 if nothing has a size, and for an SDF."""
+    """Return a robot's radius in metres around its root link, joints at 0; 0 without any size."""
     robot = read_robot(root)
     poses = link_poses(robot)
-    return _reach(
+    return _radius_of_corners(
         [(it.element, poses[it.name], origin_of) for it in robot.links if it.name in poses]
     )
 
 
 def filled_by(root: _Element) -> float:
-    """Return the radius that a robot surely fills, however it is turned: half of its reach, in SDF from
-    the origin of its model. Two robots overlap if they are nearer than both radii."""
+    """Return the radius in metres that a robot fills however it is turned: half of its reach."""
+    # Two robots overlap if they are nearer than both radii. In SDF the model's origin counts.
     if reach := reach_of(root):
         return reach / 2
     # The first model of an SDF, but for links whose pose another frame decides.
     model = root if root.tag == "model" else next(root.iter("model"), None)
     posed = ((it, _sdf_pose(it)) for it in (() if model is None else model.iterchildren("link")))
-    return _reach([(it, pose, _sdf_pose) for it, pose in posed if pose is not None]) / 2
+    return _radius_of_corners([(it, pose, _sdf_pose) for it, pose in posed if pose is not None]) / 2
 
 
 _Placed = tuple[_Element, Pose, Callable[[_Element], Pose | None]]
@@ -170,7 +169,7 @@ def _sdf_pose(element: _Element) -> Pose | None:
     return pose_of_six(values)
 
 
-def _reach(links: Sequence[_Placed]) -> float:
+def _radius_of_corners(links: Sequence[_Placed]) -> float:
     corners = [*_corners(links, "collision")] or [*_corners(links, "visual")]
     return max((hypot(x, y) for x, y, _ in corners), default=0.0)
 
@@ -214,8 +213,8 @@ def collada_box(data: bytes) -> Extent | None:
         root = stream.root
         nodes = {it.get("id", ""): it for it in root.iter("{*}node", "{*}visual_scene")}
         file = _File(corners, nodes)
-        unit = float(_attribute(root, "{*}asset/{*}unit", "meter") or 1.0)
-        scene = _target(_attribute(root, "{*}scene/{*}instance_visual_scene", "url"))
+        unit = float(_attribute_at(root, "{*}asset/{*}unit", "meter") or 1.0)
+        scene = _target(_attribute_at(root, "{*}scene/{*}instance_visual_scene", "url"))
         scaled = tuple(tuple(unit * it for it in row) for row in _SAME)
         boxes = list(_boxes(file, file.nodes[scene], scaled, count()))
     except (XMLSyntaxError, ValueError, KeyError, IndexError, RecursionError):
@@ -246,7 +245,7 @@ def _boxes(file: _File, node: _Element, above: _Rows, visits: Iterator[int]) -> 
     """Yield the boxes around the shapes of a node and of all nodes below it."""
     if next(visits) > _MOST_NODES or node.find("{*}instance_controller") is not None:
         raise ValueError("too many nodes, or a skin, which its bones move")
-    rows = reduce(_product, filter(None, map(_transform, node)), above)
+    rows = reduce(_combined_transform, filter(None, map(_transform, node)), above)
     for it in node.iterchildren("{*}instance_geometry"):
         if columns := file.corners[_target(it.get("url", ""))]:
             ends = [_ends(row, columns) for row in rows]
@@ -301,7 +300,7 @@ def _rotation(x: float, y: float, z: float, degrees: float) -> _Rows:
     )
 
 
-def _product(outer: _Rows, inner: _Rows) -> _Rows:
+def _combined_transform(outer: _Rows, inner: _Rows) -> _Rows:
     columns = [*zip(*inner, strict=True)]
     return tuple(
         tuple(
@@ -312,7 +311,7 @@ def _product(outer: _Rows, inner: _Rows) -> _Rows:
     )
 
 
-def _attribute(root: _Element, path: str, name: str) -> str:
+def _attribute_at(root: _Element, path: str, name: str) -> str:
     found = root.find(path)
     return "" if found is None else found.get(name, "")
 

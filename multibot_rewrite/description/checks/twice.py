@@ -46,10 +46,10 @@ def already_rewritten(
     own: OwnNames = NO_OWN_NAMES,
     kinds: Collection[str] = CARRYING,
 ) -> Iterator[Problem]:
-    """Yield robots whose name is in names of the document, or in a marker of inserted elements.
-    ``again`` rewrites it once more, but not where it has inserted elements of the same robot. Names
-    of ``own`` are the robot's by an argument of its xacro: they stay as they are. ``kinds`` are
-    those that get this word of the robot."""
+    """Yield robots whose name is already in names or markers of the document.
+
+    With ``again`` only markers count. Names of ``own`` have the robot's name by a xacro argument
+    and do not count. ``kinds`` are the kinds of names that get the robot's name."""
     marked = {mark.robot for mark in markers(inventory.document)}
     asked = list(robots)
     text = "\n".join({name.text for names in inventory.names for name in names}) if asked else ""
@@ -71,7 +71,7 @@ def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
 
 
 def _in_every_name(inventory: Inventory) -> Iterator[str]:
-    """Yield what every link has behind a slash, or in front of one, and the model next to a ``_``."""
+    """Yield prefixes or postfixes that all links have, and those of the model."""
     model = next((it.text for it in _names(inventory, ("model",))), "")
     links = [it.text for it in _names(inventory, ("link",))]
     for at, beside in ((-1, model.endswith), (0, model.startswith)):
@@ -81,7 +81,7 @@ def _in_every_name(inventory: Inventory) -> Iterator[str]:
 
 
 def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:
-    """Return every name of these kinds that some rewrite changes, once."""
+    """Return each name of these kinds that a rewrite changes, with its first value."""
     found: dict[tuple[str, str], UsedName] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         for name in names if claim.site.role != "keep" else ():
@@ -99,7 +99,7 @@ def carrying(known: list[UsedName], robot: str, own: OwnNames = NO_OWN_NAMES) ->
     """
     kept = {text for _, text in own}
     found = [name for name in known if name.text not in kept and _carries_name(name, robot)]
-    return found if not is_part(robot) or _most(found, known, robot) else []
+    return found if not is_part(robot) or _is_in_most(found, known, robot) else []
 
 
 def is_part(robot: str) -> bool:
@@ -121,9 +121,9 @@ def _carries_name(name: UsedName, robot: str) -> bool:
     )
 
 
-def _most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str) -> bool:
-    """Return whether these are more than half of the links, joints, namespaces or topics. In a
-    topic the robot is a word between slashes: ``left_scan`` is the scan of a part."""
+def _is_in_most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str) -> bool:
+    """Return whether more than half of a kind's names carry the robot's name."""
+    # In a topic it must be between slashes: ``left_scan`` is the scan of a part.
     counted = (it for it in found if it.kind not in TOPIC_KINDS or robot in it.text.split("/"))
     carried, all_ = (
         Counter(GROUPS.get(it.kind, it.kind) for it in names) for names in (counted, known)
@@ -132,6 +132,7 @@ def _most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str) -> b
 
 
 def _problem(inventory: Inventory, robot: str, found: list[UsedName], marked: bool) -> Problem:
+    """Return the problem that a description is already rewritten for a robot."""
     carried = f"its name is in {_names_in_words(inventory, found)}" if found else ""
     added = "elements were added for it" if marked else ""
     why = " and ".join(filter(None, (carried, added)))

@@ -31,8 +31,7 @@ CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 
 
 def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Yield plugins, hardware classes, sensor types and included models that may open something
-    unknown, and those of a Gazebo that the release lacks, each at its element."""
+    """Yield parts of which it is unknown what they open, and a Gazebo that the release lacks."""
     guesses, release, root = Guesses(), tree.definitions.release, inventory.document.root
     # An SRDF starts nothing.
     parts = [] if inventory.format == SRDF else [*active_parts(root, tree.definitions)]
@@ -67,8 +66,7 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 
 
 def _by_ros(parts: Iterable[ActivePart], definitions: Definitions) -> dict[str, list[ActivePart]]:
-    """Return the plugins that ROS 1 and ROS 2 both have, by the ROS as whose they are read; none where
-    the document's is known."""
+    """Return plugins that both ROS 1 and ROS 2 have, by the ROS whose definition is used."""
     return lists_by_key(
         (it.section.ros, it)
         for it in parts
@@ -77,7 +75,7 @@ def _by_ros(parts: Iterable[ActivePart], definitions: Definitions) -> dict[str, 
 
 
 def is_unknown(section: PluginDefinition) -> bool:
-    """Return whether a plugin has no section. Then its element's is used, or that for any ROS node."""
+    """Return whether a plugin has no definition of its own."""
     return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
 
 
@@ -104,5 +102,5 @@ def _message_and_hint(
 
 
 def not_here(definitions: Definitions, releases: Iterable[str]) -> str:
-    """Return the words for something that is in other releases only."""
+    """Return the message that something is in other releases only."""
     return f"is not in {definitions.release}, only in {', '.join(releases)}"

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What two parts both say is said once: ``<gazebo>`` blocks of the whole robot, a
-``<ros2_control>`` for parts that one driver serves, materials of one name.
+"""Leaves out what an earlier part has: ``<gazebo>`` blocks, ``<ros2_control>``, materials.
 
-A plugin that makes a controller manager exists once for all parts, with the parameter files of all
-(gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp read each ``<parameters>``). The
-first part's other settings count. Joints, sensors and gpios of a part's system go into an earlier
-one with the same type and ``<hardware>``.
-
-Sources: ros2_control component_parser.cpp (``parse_resource_from_xml``): a system has one hardware,
-and any number of joints, sensors, gpios and transmissions; urdfdom model.cpp (``parseURDF``: a
-material below ``<robot>`` that is there twice is an error; ``assignMaterial``: of a name that the
-model has, whatever is in the visual is not read)."""
+A plugin that makes a controller manager exists once for all parts, with the parameter files of
+all (gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp read each ``<parameters>``).
+The first part's other settings count. Joints, sensors and gpios of a part's system go into an
+earlier one with the same type and ``<hardware>``. Sources: ros2_control component_parser.cpp
+(``parse_resource_from_xml``): a system has one hardware, and any number of joints, sensors,
+gpios and transmissions; urdfdom model.cpp (``parseURDF``: a material below ``<robot>`` that is
+there twice is an error; ``assignMaterial``: of a name that the model has, whatever is in the
+visual is not read)."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -32,7 +30,7 @@ _THINGS = ("plugin", "joint", "link", "frame", "model", "gripper", "sensor", "li
 
 
 class Once(NamedTuple):
-    """The edits of a part and of what is before it, and what a person should know."""
+    """The edits of a part and of the text before it, and notes for the user."""
 
     part: tuple[Edit, ...] = ()
     joined: tuple[Edit, ...] = ()
@@ -42,13 +40,13 @@ class Once(NamedTuple):
 def said_once(joined: Inventory, part: Inventory) -> Once:
     """Return a part's blocks for the whole robot that are left out: an earlier part has them."""
     managers, others = _managers(joined), _managers(part)
-    said = {plain(it) for block in _blocks(joined) for it in _child_elements(block)}
+    said = {plain(it) for block in _whole_robot_blocks(joined) for it in _child_elements(block)}
     spans, before = Spans(part.document), Spans(joined.document)
     edits: list[Edit] = []
     more: list[Edit] = []
     notes: list[str] = []
     file = part.document.file
-    for block in _blocks(part):
+    for block in _whole_robot_blocks(part):
         doubles = [it for it in _child_elements(block) if plain(it) in said]
         for plugin, names in others.items():
             if plugin.getparent() is not block or plugin in doubles or not managers:
@@ -61,7 +59,7 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
                 continue
             doubles.append(plugin)
             more += _more_files(before, first, plugin, spans)
-            notes += _other_settings(first, plugin, part)
+            notes += _left_out_settings(first, plugin, part)
         notes += (
             f"{file}:{it.sourceline}: <{it.tag}> now applies to the whole robot"
             for it in _child_elements(block)
@@ -72,7 +70,7 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
     return Once(tuple(edits), tuple(more), tuple(notes))
 
 
-def _blocks(inventory: Inventory) -> Iterator[_Element]:
+def _whole_robot_blocks(inventory: Inventory) -> Iterator[_Element]:
     for it in inventory.document.root.iterchildren("gazebo"):
         if not it.get("reference"):
             yield it
@@ -87,14 +85,14 @@ def _managers(inventory: Inventory) -> dict[_Element, tuple[str, ...]]:
     return {element: section.names for element, section in inventory.served if section.process_wide}
 
 
-def _files(plugin: _Element) -> list[_Element]:
+def _parameter_files(plugin: _Element) -> list[_Element]:
     return list(plugin.iterchildren(_FILES))
 
 
 def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) -> Iterator[Edit]:
     """Yield the edits that move parameter files of a removed plugin into the one that stays."""
-    known = {text_of(it) for it in _files(plugin)}
-    texts = [spans.text_of(it) for it in _files(other) if text_of(it) not in known]
+    known = {text_of(it) for it in _parameter_files(plugin)}
+    texts = [spans.text_of(it) for it in _parameter_files(other) if text_of(it) not in known]
     if last := _child_elements(plugin)[-1:]:
         at = before.end_of(last[0])
         yield from (was(at, at, b"", b"\n      " + text) for text in texts)
@@ -106,7 +104,7 @@ def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) 
         yield was(start, end, old, head + b"".join(texts) + b"</%s>" % str(plugin.tag).encode())
 
 
-def _other_settings(plugin: _Element, other: _Element, part: Inventory) -> Iterator[str]:
+def _left_out_settings(plugin: _Element, other: _Element, part: Inventory) -> Iterator[str]:
     first = {plain(it) for it in _child_elements(plugin)}
     for it in _child_elements(other):
         if it.tag != _FILES and plain(it) not in first:
@@ -140,8 +138,8 @@ def one_system(joined: Inventory, part: Inventory) -> Once:
 
 def like(system: _Element, root: _Element) -> Iterator[_Element]:
     """Yield the systems with the type and hardware of another one."""
-    wanted = _hardware(system)
-    yield from (it for it in root.iterchildren(_SYSTEM) if _hardware(it) == wanted)
+    wanted = _type_and_hardware(system)
+    yield from (it for it in root.iterchildren(_SYSTEM) if _type_and_hardware(it) == wanted)
 
 
 def driven(system: _Element) -> Sequence[_Element]:
@@ -156,7 +154,7 @@ def has_all(system: _Element, others: Iterable[_Element]) -> bool:
     return any(all(it in own for it in wanted) for own in every)
 
 
-def _hardware(system: _Element) -> tuple[object, ...]:
+def _type_and_hardware(system: _Element) -> tuple[object, ...]:
     found = [plain(it) for it in system.iterchildren(_HARDWARE)]
     return system.get("type", ""), tuple(sorted(found, key=repr))
 
@@ -171,14 +169,14 @@ def looks(root: _Element) -> dict[str, _Look]:
     found: dict[str, _Look] = {}
     below = root.iterfind(f"link/visual/{_TAG}")
     for it in (*root.iterchildren(_TAG), *below):
-        look = _look(it)
+        look = _colour_and_texture(it)
         if look is not None:
             found.setdefault(it.get("name", ""), look)
     found.pop("", None)
     return found
 
 
-def _look(material: _Element) -> _Look | None:
+def _colour_and_texture(material: _Element) -> _Look | None:
     colour, texture = material.find("color"), material.find("texture")
     if colour is None and texture is None:
         return None
@@ -196,7 +194,7 @@ def other_looks(joined: _Element, part: ReadPart) -> tuple[str, ...]:
 
 
 def word_of(name: str, prefix: str) -> str:
-    """Return the text before materials of a part: its prefix, or its name."""
+    """Return the text before the materials of a part: its prefix, or its name."""
     return prefix or f"{name}_"
 
 

@@ -21,7 +21,13 @@ from multibot_rewrite.description.joining.join import GivenPart, JoinedText, joi
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.sources.read import JOIN, SourceText, read_alone, read_file
+from multibot_rewrite.description.sources.read import (
+    BESIDE,
+    JOIN,
+    SourceText,
+    read_alone,
+    read_file,
+)
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries_of,
@@ -35,8 +41,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     wrong,
 )
 
-# Files beside a description, of which a part may have several.
-BESIDE = ("controllers", "moveit")
 SAMPLES = "samples"
 _KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "rviz", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -56,7 +60,7 @@ def listed_in(path: str) -> tuple[tuple[Part, ...], int]:
         items = entries_of(keys, "join")
         if not items:
             raise UsageError(f"{path}: there are no parts; write {_EXAMPLE}")
-        parts = tuple(_part(it, os.path.dirname(path)) for it in items)
+        parts = tuple(_part_of_item(it, os.path.dirname(path)) for it in items)
         samples = word_of(keys, SAMPLES, "0")
         if not samples.isdecimal():
             wrong(keys[SAMPLES], f"samples is {samples}; write a number such as 10000")
@@ -99,7 +103,7 @@ def _without_banner(text: SourceText) -> bytes:
     return b'<?xml version="1.0"?>\n' + text.data[at:] if at > 0 else text.data
 
 
-def _part(item: YamlItem, folder: str) -> Part:
+def _part_of_item(item: YamlItem, folder: str) -> Part:
     keys = table(item, "a part", _KEYS)
     at = table_of(keys, "at")
     for key, value in at.items():
@@ -112,8 +116,10 @@ def _part(item: YamlItem, folder: str) -> Part:
             wrong(it, f"pose has {key}: {it.value}; write numbers for {', '.join(_POSE)}")
     pose = {key: number(word(it, key)) for key, it in table_of(at, "pose").items()}
     given: dict[str, Any] = {key: word_of(keys, key) for key in ("prefix", "name")}
-    given |= {key: _path(word_of(keys, key), folder) for key in ("description", "srdf", "rviz")}
-    given |= {key: [_path(it, folder) for it in words_of(keys, key)] for key in BESIDE}
+    given |= {
+        key: _path_from(word_of(keys, key), folder) for key in ("description", "srdf", "rviz")
+    }
+    given |= {key: [_path_from(it, folder) for it in words_of(keys, key)] for key in BESIDE}
     given["one_system"] = flag_of(keys, "one_system")
     given["at"] = {"parent": word_of(at, "parent"), "pose": pose}
     given["arguments"] = {
@@ -127,8 +133,7 @@ def _part(item: YamlItem, folder: str) -> Part:
 
 
 def part_of(keys: Mapping[str, Any]) -> Part:
-    """Return a part of checked data with the keys of a list of parts; raises UsageError for one that is
-    a list of parts itself."""
+    """Return a part from checked keys; raises UsageError if it is a list of parts itself."""
     described, at = keys["description"], keys.get("at", {})
     if described.endswith(JOIN):
         raise UsageError(f"{described} is a list of parts; name a URDF or xacro")
@@ -154,5 +159,5 @@ def _as_list(value: str | Sequence[str]) -> Sequence[str]:
     return [value] if isinstance(value, str) else value
 
 
-def _path(path: str, folder: str) -> str:
+def _path_from(path: str, folder: str) -> str:
     return os.path.normpath(os.path.join(folder, path)) if path else ""

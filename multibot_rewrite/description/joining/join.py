@@ -56,7 +56,7 @@ _MOUNT = """
 
 
 class Fixed(NamedTuple):
-    """The edits that fix a part, the joint that they make, and what a person should know."""
+    """The edits that fix a part, the joint that they make, and notes for the user."""
 
     edits: tuple[Edit, ...]
     joint: str
@@ -156,7 +156,7 @@ def join_texts(given: Sequence[GivenPart], tree: Tree) -> JoinedText:
     if len(given) < 2:
         raise UsageError("one description alone: give those that are joined to it, too")
     parts = [read_part(*it, tree, at == 0) for at, it in enumerate(given)]
-    _check_given(given, parts)
+    _check_parts(given, parts)
     known: dict[tuple[str, str], str] = {}
     with_names(known, parts[0])
     mounted = [Mounted(parts[0], "", ZERO, "", parts[0].text)]
@@ -173,7 +173,7 @@ def join_texts(given: Sequence[GivenPart], tree: Tree) -> JoinedText:
     return JoinedText(data, tuple(mounted), tuple(notes), findings)
 
 
-def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
+def _check_parts(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
     if given[0].part.at:
         raise UsageError(f"{given[0].file}: it is the first part, there is no link before it")
     first = parts[0]
@@ -192,10 +192,10 @@ def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
 def _added(
     data: bytes, spec: Part, part: ReadPart, first: ReadPart, tree: Tree
 ) -> tuple[bytes, Mounted, Sequence[str]]:
-    """Return the text with one more part, the part, and notes."""
+    """Return the text with one more part, the part in place, and notes."""
     joined = collect(read_document(data, JOINED), tree)
     robot = read_robot(joined.document.root)
-    _check_link(spec.at, part, robot)
+    _check_link_exists(spec.at, part, robot)
     names = other_looks(joined.document.root, part)
     word = word_of(part.name, part.prefix)
     text = prefixed(part.text, part.file, word, names)
@@ -222,7 +222,7 @@ def _edited_text(text: bytes, edits: Iterable[Edit]) -> bytes:
     return b"".join(cut(text, sorted(edits, key=lambda it: it.start)))
 
 
-def _check_link(at: str, part: ReadPart, robot: Robot) -> None:
+def _check_link_exists(at: str, part: ReadPart, robot: Robot) -> None:
     if at in robot.link:
         return
     turning = {it.child for it in robot.joints if it.type == "continuous"}
@@ -255,7 +255,7 @@ def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list
 
 
 def _declared(document: Document) -> set[tuple[bytes, bytes]]:
-    """Return prefixes and namespaces that the root's start tag has itself."""
+    """Return the XML prefixes and namespaces that the root's start tag declares."""
     start = document.starts[0]
     tag = document.source[start : tag_end(document.source, start)]
     found = ((prefix, uri) for prefix, uri in document.root.nsmap.items() if prefix)

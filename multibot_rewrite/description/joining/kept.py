@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a joined text says what it was made of, so that each part can be taken out byte by byte.
+"""The comments of a joined text that let each part be taken out of it, byte by byte.
 
 A part is in front of ``</robot>`` of the first one, between two comments:
 
@@ -69,7 +69,7 @@ def without_marks(text: bytes) -> bytes:
 
 def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
     """Return the edit that replaces ``old`` by ``new``, and keeps ``old`` in a comment."""
-    kept = b"<!-- multibot was %d %s -->" % (bool(new), _with_codes(old))
+    kept = b"<!-- multibot was %d %s -->" % (bool(new), _escaped(old))
     return Edit(start, end, kept + new, None)
 
 
@@ -81,13 +81,13 @@ def left_out(spans: Spans, element: _Element) -> Edit:
 def section(it: KeptText, start: int, end: int) -> bytes:
     """Return a part for a joined text; ``start`` and ``end`` delimit the content of its root."""
     names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
-    words = _comment(it.name, prefix=it.prefix, materials=names)
-    first = b"  <!-- multibot part %s %s -->" % (words, _with_codes(it.text[:start]))
-    last = _END % it.name.encode() + _with_codes(it.text[end:]) + b" -->\n"
+    words = _comment_text(it.name, prefix=it.prefix, materials=names)
+    first = b"  <!-- multibot part %s %s -->" % (words, _escaped(it.text[:start]))
+    last = _END % it.name.encode() + _escaped(it.text[end:]) + b" -->\n"
     return first + it.text[start:end] + last
 
 
-def _comment(name: str, **more: str) -> bytes:
+def _comment_text(name: str, **more: str) -> bytes:
     return " ".join([name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
 
 
@@ -98,7 +98,7 @@ def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
         at = text.index(b" -->\n", last) + len(b" -->\n")
         return text[:at] + more + text[at:]
     at = silenced(text).rindex(b"</")
-    mark = b"  <!-- multibot base %s -->\n" % _comment(name, prefix=prefix)
+    mark = b"  <!-- multibot base %s -->\n" % _comment_text(name, prefix=prefix)
     return text[:at] + mark + more + text[at:]
 
 
@@ -107,7 +107,8 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     # The text with what was left out or changed in its old place.
     spans = Spans(read_document(text, file))
     edits = [
-        Edit(it.start(), _end(spans, it, file), _plain(it[2]), None) for it in _WAS.finditer(text)
+        Edit(it.start(), _end_of_replacement(spans, it, file), _unescaped(it[2]), None)
+        for it in _WAS.finditer(text)
     ]
     before = b"".join(cut(text, edits))
     mark = _BASE.search(before)
@@ -123,7 +124,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
             what = f"the comment at the end of part {name.decode()!r} was edited by hand"
             raise InputError(f"{file}: {what}")
         tail = before[close + len(end) : stop]
-        whole = _plain(head) + before[part.end() : close] + _plain(tail)
+        whole = _unescaped(head) + before[part.end() : close] + _unescaped(tail)
         names = tuple(unquote(it) for it in materials.decode().split(",") if it)
         found.append(KeptText(name.decode(), prefix.decode(), names, whole))
         last = stop + len(b" -->\n")
@@ -132,7 +133,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     return [KeptText(first.decode(), prefix.decode(), (), base), *found]
 
 
-def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:
+def _end_of_replacement(spans: Spans, found: re.Match[bytes], file: str) -> int:
     if found[1] == b"0":
         return found.end()
     element = spans.first_from(found.end())
@@ -146,9 +147,9 @@ _HIDDEN = {shown: hidden for hidden, shown in _SHOWN.items()}
 _CODE = lazy_compile(rb"%25|%2D|%20")
 
 
-def _with_codes(text: bytes) -> bytes:
+def _escaped(text: bytes) -> bytes:
     return _ESCAPED.sub(lambda it: _HIDDEN[it[0]], text)
 
 
-def _plain(text: bytes) -> bytes:
+def _unescaped(text: bytes) -> bytes:
     return _CODE.sub(lambda it: _SHOWN[it[0]], text)

@@ -73,8 +73,7 @@ def files_of(part: Part) -> Iterator[str]:
 
 
 class ReadPart(NamedTuple):
-    """A part as it was read: ``data`` are the bytes of its description, ``text`` the same with its
-    prefix, ``inventory`` and ``robot`` are what is in that. ``findings`` are of the rewriting."""
+    """A part as it was read: ``data`` before it got its prefix, the others with the prefix."""
 
     name: str
     file: str
@@ -92,7 +91,7 @@ class ReadPart(NamedTuple):
 
 
 def prefixing(kinds: Iterable[str] = PREFIXED, topics: str | None = None) -> Naming:
-    """Return the naming that puts a literal prefix before names of these kinds."""
+    """Return the naming that puts a literal prefix before these kinds of names."""
     named = make_naming("frames-per-robot", PREFIX, topics)
     return named._replace(separators=dict.fromkeys(kinds, ""))
 
@@ -127,7 +126,7 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
             f"{file}: it is joined itself; give its parts here, or give it first, as it is"
         )
     inventory = collect(read_document(data, file), tree)
-    for what in _faults(inventory):
+    for what in _reasons_against_joining(inventory):
         raise InputError(f"{file}: {what}")
     text = data
     findings: tuple[Finding, ...] = ()
@@ -147,7 +146,7 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
     return ReadPart(name, file, part.prefix, data, text, inventory, robot, findings)
 
 
-def _faults(inventory: Inventory) -> Iterator[str]:
+def _reasons_against_joining(inventory: Inventory) -> Iterator[str]:
     if inventory.format != "robot":
         yield f"it is <{inventory.document.root.tag}>; only URDFs can be joined"
         return
@@ -177,7 +176,7 @@ def _faults(inventory: Inventory) -> Iterator[str]:
 
 
 def names_of(inventory: Inventory) -> Iterator[tuple[str, str]]:
-    """Yield kind and name of all that a robot has once; sensors are those of ros2_control."""
+    """Yield kind and name of what a robot has only once; sensors are those of ros2_control."""
     for claim in inventory.claims:
         site = claim.site
         if site.role != "declares" or not claim.attribute or site.kinds[0] not in ONCE:
@@ -200,5 +199,5 @@ def check_meeting(part: ReadPart, known: Mapping[tuple[str, str], str]) -> None:
 
 
 def with_names(known: dict[tuple[str, str], str], part: ReadPart) -> None:
-    """Note the names of a part."""
+    """Add the names of a part to the known ones."""
     known.update(dict.fromkeys(names_of(part.inventory), part.file))

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The proof that runs on every join: it reads the joined bytes again. Each part that is taken out
-is, byte by byte, what went in; and a second reader finds all of it.
+"""The verification of every join: the joined text has each part, byte by byte, and is one tree.
 
-What an earlier part says already may be left out: a material, a block of the whole robot. A part's
-link ``world`` gives way to the link that the part is on, its ros2_control to one that drives all of
-it.
-"""
+An earlier part may have what a part leaves out: a material, a block of the whole robot. Its link
+``world`` is replaced by the link that it is on, its ros2_control by one that drives all of it."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -31,8 +28,7 @@ _ROUNDED = 1e-9
 
 
 class Mounted(NamedTuple):
-    """A part with where it is in the joined robot: fixed to the link ``at`` at a ``pose``, by the new
-    ``joint``, or by its own where that is empty. ``text`` is its text there."""
+    """A part in place: on link ``at`` at a ``pose``, by a new ``joint`` or, if empty, its own."""
 
     part: ReadPart
     at: str
@@ -59,28 +55,28 @@ def check_read(root: _Element, parts: Sequence[Mounted]) -> None:
                 left[key] -= 1
             elif not _stands_for_it(it, mounted, root):
                 raise ProofError(f"{file}: <{it.tag}> {it.get('name', '')!r} is changed")
-        wanted.update(_names(own))
+        wanted.update(_tags_and_names(own))
         wanted -= Counter([("link", WORLD)] if mounted.is_without_world else [])
         if mounted.joint:
             wanted["joint", mounted.joint] += 1
             joint = next(it for it in root.iterchildren("joint") if it.get("name") == mounted.joint)
             ends = [end_of(joint, tag) for tag in ("parent", "child")]
             fixed = joint.get("type") == "fixed" and ends == [mounted.at, mounted.part.root]
-            if not fixed or not _is_at(joint, pose_of_six(mounted.pose)):
+            if not fixed or not _has_pose(joint, pose_of_six(mounted.pose)):
                 raise ProofError(f"{mounted.part.file}: it is not fixed to {mounted.at!r} as asked")
-    found = Counter(_names(root))
+    found = Counter(_tags_and_names(root))
     if found != wanted:
         kind, name = next(iter((found - wanted) + (wanted - found)))
         raise ProofError(f"{kind} {name!r} is there {found[kind, name]} times")
     _check_tree(root)
 
 
-def _names(root: _Element) -> Iterator[tuple[str, str]]:
+def _tags_and_names(root: _Element) -> Iterator[tuple[str, str]]:
     return ((str(it.tag), it.get("name", "")) for it in root.iterchildren("link", "joint"))
 
 
 def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
-    """Return whether something is in the place of an element of a part."""
+    """Return whether an element in the whole replaces an element of a part."""
     name = it.get("name", "")
     of_world = {"link": name, "gazebo": it.get("reference", "")}.get(str(it.tag)) == WORLD
     if mounted.is_without_world and of_world:
@@ -101,7 +97,9 @@ def _has_block(block: _Element, root: _Element) -> bool:
     said = [it for block in blocks for it in block.iterchildren("*")]
     for it in block.iterchildren("*"):
         same = [one for one in said if plain(one) == plain(it)]
-        there = [one for one in said if one.tag == "plugin" == it.tag and _file(one) == _file(it)]
+        there = [
+            one for one in said if one.tag == "plugin" == it.tag and _library(one) == _library(it)
+        ]
         files = {plain(file) for one in there for file in one.iterchildren("parameters")}
         has_files = all(plain(file) in files for file in it.iterchildren("parameters"))
         if not same and not (there and has_files):
@@ -109,7 +107,8 @@ def _has_block(block: _Element, root: _Element) -> bool:
     return True
 
 
-def _file(plugin: _Element) -> str:
+def _library(plugin: _Element) -> str:
+    """Return the file name of a plugin's library."""
     return plugin.get("filename", "")
 
 
@@ -122,10 +121,10 @@ def _moved(old: _Element, mounted: Mounted, root: _Element) -> bool:
     inner = pose_of(old.find("origin"))
     if inner is None or same[0] != same[1] or old.attrib != new.attrib:
         return False
-    return _is_at(new, placed(pose_of_six(mounted.pose), inner))
+    return _has_pose(new, placed(pose_of_six(mounted.pose), inner))
 
 
-def _is_at(joint: _Element, wanted: Pose) -> bool:
+def _has_pose(joint: _Element, wanted: Pose) -> bool:
     found = pose_of(joint.find("origin"))
     if found is None:
         return False

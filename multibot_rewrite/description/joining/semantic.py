@@ -37,8 +37,7 @@ _PREFIX = "give the part a prefix of its own"
 
 
 class PartSemantics(NamedTuple):
-    """A part with the bytes of its SRDF, as its prefix spells it, empty where it has none; ``findings``
-    are of names in it that have no prefix."""
+    """A part, its SRDF with its prefix or empty, and findings about names without prefix."""
 
     part: ReadPart
     data: bytes
@@ -47,7 +46,7 @@ class PartSemantics(NamedTuple):
 
 
 class JoinedSemantics(NamedTuple):
-    """One SRDF, and what a person should know."""
+    """One SRDF, and notes for the user."""
 
     data: bytes
     notes: tuple[str, ...]
@@ -71,8 +70,9 @@ def renamed_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSema
 def joined_srdf(
     parts: Sequence[PartSemantics], urdf: bytes, samples: int = 0, hint: str = _PREFIX
 ) -> JoinedSemantics:
-    """Return one SRDF for the joined ``urdf``; raises InputError for a name that two parts have,
-    with the ``hint`` what to do, and as ``touching`` where ``samples`` poses are asked for."""
+    """Return one SRDF for the joined ``urdf``; raises InputError for a name that two parts have.
+
+    ``hint`` says what to do then. With ``samples`` it raises as ``touching``."""
     described = read_xml(urdf, "the joined description")
     root = etree.Element("robot", name=described.get("name", ""))
     known: dict[tuple[str, ...], str] = {}
@@ -97,7 +97,7 @@ def joined_srdf(
         files = {link: it.part.file for it in parts for link in it.part.robot.link}
         found = touching(described, others, files, samples)
         reasons |= found.reasons
-        notes = list(_sampling(others, found, samples))
+        notes = list(_notes(others, found, samples))
     for (one, other), why in reasons.items():
         etree.SubElement(root, "disable_collisions", link1=one, link2=other, reason=why)
     told = dict.fromkeys(str(it) for part in parts for it in part.findings if it.level == WARNING)
@@ -141,6 +141,7 @@ def _links_with_collision(described: _Element) -> set[str]:
 
 
 def _nearest(link: str, beside: dict[str, set[str]], shaped: Collection[str]) -> Iterator[str]:
+    """Yield the links with a shape that no other such link separates from a link."""
     seen, todo = {link}, [link]
     for at in todo:  # grows
         for other in beside[at] - seen:
@@ -159,7 +160,8 @@ def _between(described: _Element, parts: Sequence[PartSemantics]) -> Iterator[tu
         yield from ((min(it), max(it)) for it in product(some, more))
 
 
-def _sampling(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) -> Iterator[str]:
+def _notes(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) -> Iterator[str]:
+    """Yield notes on links that touch always or never in the random poses."""
     many = Counter(found.reasons.values())
     what = f"of {plural(len(pairs), 'pair')} of links of two parts {many[NEVER]} never touch"
     yield f"SRDF: {what} in {samples} random poses; the others are checked for collisions"

@@ -32,8 +32,7 @@ Pair = tuple[str, str]
 
 
 class Touching(NamedTuple):
-    """``reasons`` are ``NEVER`` or ``ALWAYS`` by pair; ``unknown`` are links whose shapes cannot be
-    read, with the reason, so that nothing is said of them."""
+    """Pairs of links with ``NEVER`` or ``ALWAYS``, and links without a readable shape, and why."""
 
     reasons: Mapping[Pair, str]
     unknown: Mapping[str, str]
@@ -42,16 +41,15 @@ class Touching(NamedTuple):
 def touching(
     described: _Element, pairs: Iterable[Pair], files: Mapping[str, str], samples: int
 ) -> Touching:
-    """Return which pairs of links always or never touch in ``samples`` random poses, the same on each
-    run; ``files`` are the descriptions of links.
+    """Return which pairs of links always or never touch in ``samples`` random poses.
 
-    Raises UsageError without pinocchio, InputError for a description that it does not read.
-    """
+    ``files`` are the descriptions of links. Raises UsageError without pinocchio, InputError for
+    a description that it does not read."""
     root = etree.fromstring(etree.tostring(described))
     unknown = dict(_with_files(root, files))
     text = etree.tostring(root).decode()
     asked = [it for it in pairs if not unknown.keys() & set(it)]
-    scene = _scene(_pinocchio(), text, asked)
+    scene = _scene(_import_pinocchio(), text, asked)
     # What two samples differ in is settled, and not looked at again.
     found: dict[Pair, bool] = {}
     left = list(asked)
@@ -65,7 +63,7 @@ def touching(
     return Touching({it: ALWAYS if found[it] else NEVER for it in left if it in found}, unknown)
 
 
-def _pinocchio() -> Any:
+def _import_pinocchio() -> Any:
     try:
         return import_module("pinocchio")
     except ImportError as error:

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Everything in a description that can open a topic, node, service, frame, socket or file, and whether
-it is known what it opens.
+"""Finds everything in a description that opens a topic, node, frame, socket, file or the like.
 
-One rule: it is known by fields of the plugin definitions, that is by a name that its section holds
-or by the section's ``opens:``; else it is not known. Where elements are found: sdformat
-src/Root.cc, Model.cc and parser_urdf.cc (plugins are anywhere in a ``<gazebo>``), gz-sim
-SystemManager.cc (a plugin of a plugin is its own matter), webots_ros2_driver WebotsNode.cpp,
-ros2_control component_parser.cpp."""
+What it opens is known if its plugin definition holds a name or says ``opens:``. Where elements
+are found: sdformat src/Root.cc, Model.cc and parser_urdf.cc (plugins are anywhere in a
+``<gazebo>``), gz-sim SystemManager.cc (a plugin of a plugin is its own matter),
+webots_ros2_driver WebotsNode.cpp, ros2_control component_parser.cpp."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -34,7 +32,7 @@ def plugin_section(
 ) -> tuple[PluginDefinition | None, bool]:
     """Return the definition of a plugin, or None, and whether the plugin itself is known."""
     with_ros = plugin.find("ros") is not None
-    for key in _keys(plugin):
+    for key in _definition_keys(plugin):
         found = definitions.find("plugin", key)
         # gz-sim calls a plugin by its class. One that is called so is no library of Gazebo Classic,
         # which calls a node by that name; those of gazebo_ros are for Classic alone.
@@ -44,13 +42,14 @@ def plugin_section(
             continue
         # Nothing in ROS 1 reads a <ros>.
         if found and not (with_ros and all(it.ros == ROS_1 for it in found)):
-            return _of_release(found, plugin), True
-    if not with_ros:
+            return _section_by_ros(found, plugin), True
+    # A system of gz-sim is called by its class: whether it has a node is not known.
+    if not with_ros or "::" in plugin.get("name", ""):
         return None, False
     return definitions.find("plugin", WITH_ROS)[0], False
 
 
-def _keys(plugin: _Element) -> Iterator[str]:
+def _definition_keys(plugin: _Element) -> Iterator[str]:
     library = plugin.get("filename", "").strip().rpartition("/")[2].removeprefix("lib")
     name = _ENDING.sub("", library)
     system = _SYSTEM.fullmatch(name)
@@ -62,9 +61,9 @@ def _keys(plugin: _Element) -> Iterator[str]:
     yield plugin.get("type", "").strip()
 
 
-def _of_release(found: Sequence[PluginDefinition], plugin: _Element) -> PluginDefinition:
-    """Return the section of the ROS that loads a plugin. Only ROS 2 reads <ros>; without one the
-    release that reads more of the parameters counts, ROS 2 if both do."""
+def _section_by_ros(found: Sequence[PluginDefinition], plugin: _Element) -> PluginDefinition:
+    """Return the definition for the ROS that loads a plugin."""
+    # Only ROS 2 reads <ros>; without one the ROS that reads more of the parameters counts.
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
     if old is None or plugin.find("ros") is not None:
@@ -74,9 +73,8 @@ def _of_release(found: Sequence[PluginDefinition], plugin: _Element) -> PluginDe
 
 
 def hardware_class(system: _Element) -> str:
-    """Return the class that a ros2_control system loads, empty without one: that of its last
-    ``<hardware>`` (ros2_control component_parser.cpp parse_resource_from_xml: each one replaces the one
-    before)."""
+    """Return the class that a ros2_control system loads, by its last ``<hardware>``; or empty."""
+    # Each one replaces the one before (component_parser.cpp parse_resource_from_xml).
     blocks = system.findall("hardware")
     return child_text(blocks[-1], "plugin") or "" if blocks else ""
 
@@ -132,8 +130,9 @@ class ActivePart(NamedTuple):
 
     @property
     def opens_something(self) -> bool:
-        """False only where it is known to open nothing but what a value says, which is compared, and
-        what is below the name that its model is spawned with, as all of a sensor without a topic."""
+        """Return False only if all that it opens is known: named by values, which are compared."""
+        # What is below the name that its model is spawned with is known, too, but not what a sensor
+        # without a topic opens.
         words = self.section.opens if self.section else ()
         if self.kind == SENSOR and self.section:
             return False
@@ -142,7 +141,7 @@ class ActivePart(NamedTuple):
 
     @property
     def is_apart(self) -> bool:
-        """Return whether a namespace keeps apart what it opens, apart from values."""
+        """Return whether all that it opens, besides names in values, is below a namespace."""
         words = self.section.opens if self.section else ()
         return {NAMESPACE} == {it for it in words if not split_opens(it).path}
 
@@ -170,8 +169,8 @@ def active_parts(root: _Element, definitions: Definitions) -> Iterator[ActivePar
 
 
 def is_loaded(plugin: _Element) -> bool:
-    """Return whether a simulator looks for a plugin at this place. In a URDF these are its <gazebo> and
-    the tags of other simulators (sdformat parser_urdf.cc, webots_ros2_driver WebotsNode.cpp)."""
+    """Return whether a simulator looks for a plugin at this place."""
+    # In a URDF: <gazebo> and tags of others (sdformat parser_urdf.cc, WebotsNode.cpp).
     return not _PARTS.issuperset(str(it.tag) for it in plugin.iterancestors())
 
 
@@ -181,7 +180,7 @@ def plugin_name(plugin: _Element) -> str:
 
 
 def _is_simulated(sensor: _Element) -> bool:
-    """Return whether it is a sensor of Gazebo; those of urdfdom and of ros2_control run nothing."""
+    """Return whether it is a sensor of Gazebo, not of urdfdom or ros2_control."""
     parent = sensor.getparent()
     if parent is None or parent.tag in ("robot", "ros2_control"):
         return False
@@ -198,8 +197,7 @@ def says_what_it_opens(section: PluginDefinition) -> bool:
 
 
 def opened(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, str]]:
-    """Yield kind, text and parameter of the addresses and files that a part of the robot opens, and
-    of relative names that no row has."""
+    """Yield kind, text and parameter of what a part opens: addresses, files, unlisted names."""
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
     if TRANSFORMS in section.opens:

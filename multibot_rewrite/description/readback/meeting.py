@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where robots meet: names in the running system that two of them have and that are not shared; and
-what met or matched before a rewrite, and does not after it: remap rules and names of their plugin, two
-ends that were equal, what another process makes of a topic's name.
+"""Finds where robots collide, and what matched before a rewrite and does not after it.
 
-A rewrite, a lint, a remap table and a build ask here: what they find has the code of the rule that
-finds it in a system that runs.
-"""
+That is names that two robots have and that are not shared; remap rules without their names; two
+ends that were equal; what another process makes of a topic's name. The codes are those of the
+rules for a running system."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -78,7 +76,7 @@ class Meeting(NamedTuple):
 
 
 def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Iterator[RuntimeName]:
-    """Yield the names without ``word``, the robot's name: every robot would have them.
+    """Yield the names that do not contain ``word``, the robot's name.
 
     Each name once, at its first place.
     """
@@ -90,7 +88,7 @@ def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Ite
 
 
 def meetings(named: Mapping[str, Iterable[RuntimeName]], naming: Naming) -> Iterator[Meeting]:
-    """Yield the names that two of these robots have, each once."""
+    """Yield the names that two robots have, each once."""
     first: dict[tuple[str, str], tuple[str, RuntimeName]] = {}
     seen: set[tuple[str, str]] = set()
     for robot, names in named.items():
@@ -135,7 +133,7 @@ def code_of(name: RuntimeName) -> str:
 
 
 def said(who: str, *names: RuntimeName) -> str:
-    """Return the message that these robots share a name, and which of their parts have it."""
+    """Return the message that robots share a name, with the parts that have it."""
     name, by = names[0], " and ".join(dict.fromkeys(it.path for it in names))
     if code_of(name) == LOOKUP:
         return (
@@ -146,8 +144,7 @@ def said(who: str, *names: RuntimeName) -> str:
 
 
 def advice(name: RuntimeName, together: bool = False) -> str:
-    """Return the hint for a shared name, except those of controllers. With ``together`` the robots were
-    rewritten in one call, so that each has a number of its own if possible."""
+    """Return the hint for a shared name, unless of a controller; ``together``: in one call."""
     if name.kind in _OF_KIND:
         return _OF_KIND[name.kind]
     if name.kind == active.NUMBER and not together:
@@ -163,7 +160,7 @@ def advice(name: RuntimeName, together: bool = False) -> str:
 
 
 def _for_code(name: RuntimeName) -> str:
-    """Return what to do about a shared name that only the code of a plugin has."""
+    """Return the hint for a shared name that is fixed in a plugin's code."""
     if name.path == IN_CODE:
         return f"{_FIXED}: use --layout tf-per-robot, or {_OF_FRAME}"
     if name.tag == "ros2_control":
@@ -201,11 +198,8 @@ def lost_rules(before: Reading, after: Reading) -> Iterator[LostRule]:
 
 
 def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
-    """Return the full name of an endpoint without rules for topics, and the number of the rule that
-    changes it, or None.
-
-    Those of ``<remapping>`` are counted from the end, because inserted ones come first.
-    """
+    """Return the full name of an end without rules, and the number of its rule or None."""
+    # Those of ``<remapping>`` are counted from the end, because inserted ones come first.
     bound = itself(node)
     name = full_name(end.code_name, end.kind, bound)
     sources = [expand(it.rule.source, bound.namespace, bound.node) for it in node.rules]
@@ -216,8 +210,7 @@ def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
 
 
 def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, RuntimeName]]:
-    """Yield each end that lost the first end on its topic, with that one, as they are now: what is
-    left unchanged by the plugin definitions counts as well."""
+    """Yield each end that lost the topic of the first end, with that one, as they are now."""
     now = _by_place((*after.names, *after.other_ends))
     was = _by_place((*before.names, *before.other_ends))
     of_topic = lists_by_key(((it.kind, it.name), at) for at, it in was.items() if at in now)
@@ -227,25 +220,24 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
 
 
 def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str, str]]:
-    """Yield each image that had its camera_info next to it and has not now, with the name that is
-    asked for and the one that it has. Who shows an image replaces the last segment of its topic
-    (image_common camera_common.cpp getCameraInfoTopic; RViz and image_pipeline subscribe with
-    it)."""
+    """Yield each image that lost its camera_info, with the wanted name and the present one."""
+    # A viewer replaces the last segment of an image's topic (image_common camera_common.cpp
+    # getCameraInfoTopic; RViz and image_pipeline subscribe with it).
     now = _by_place(after.names)
     was = _by_place(before.names)
     infos = lists_by_key((name.name, place) for place, name in was.items())
     new = {it.name for it in now.values()}
-    cameras = {(it.tag, it.number) for it in before.names if it.name == _info_of(it.name)}
+    cameras = {(it.tag, it.number) for it in before.names if it.name == _camera_info_topic(it.name)}
     for place, name in was.items():
-        beside = _info_of(name.name)
+        beside = _camera_info_topic(name.name)
         is_camera = name.tag == "sensor" and (name.tag, name.number) in cameras
         is_image = beside != name.name and (is_camera or "image" in name.name)
         info = next((now[it].name for it in infos.get(beside, ()) if it in now), "")
-        if is_image and info and place in now and _info_of(now[place].name) not in new:
-            yield now[place], _info_of(now[place].name), info
+        if is_image and info and place in now and _camera_info_topic(now[place].name) not in new:
+            yield now[place], _camera_info_topic(now[place].name), info
 
 
-def _info_of(topic: str) -> str:
+def _camera_info_topic(topic: str) -> str:
     return f"{topic.rpartition('/')[0]}/{CAMERA_INFO}"
 
 

@@ -45,14 +45,13 @@ _SOME_TURNS = 10 * pi
 
 
 class RuntimeName(NamedTuple):
-    """A name in the running system: its kind (topic, service, node, frame, or what a plugin looks up
-    in the whole world), its text, and where it comes from: the ``number``-th element with this
-    ``tag``, and ``path``, the parameter. ``type`` is empty where it is not known.
+    """A name in the running system and where it is from: the ``number``-th element with ``tag``.
 
-    An end of a ROS node has ``role`` and ``code_name``, its name in the code or in the ``parameter``;
-    ``off`` are parameters that would turn it on. ``of_controllers`` is true for what the controllers
-    have that the node loads, where they take no rules of it.
-    """
+    ``kind`` is topic, service, node, frame, or what a plugin looks up in the whole world;
+    ``path`` is the parameter. ``type`` is empty if unknown. An end of a ROS node has ``role``
+    and ``code_name``, its name in the code or in the ``parameter``; ``off`` are parameters that
+    would turn it on. ``of_controllers``: of controllers to which the rules of their node do not
+    apply."""
 
     kind: str
     name: str
@@ -67,7 +66,7 @@ class RuntimeName(NamedTuple):
     off: str = ""
 
     def element_in(self, root: _Element) -> _Element:
-        """Return what it comes from in a text with the same elements, else the root."""
+        """Return its element in a text with the same elements, or else the root."""
         return next(islice(root.iter(self.tag), self.number, None), root)
 
 
@@ -149,7 +148,7 @@ def node_of(
 
 
 def _manager(plugin: _Element, section: PluginDefinition, name: str, namespace: str) -> str:
-    """Return the controller manager: the plugin's node; Classic's plugin is another node."""
+    """Return the full name of a plugin's controller manager; empty without one."""
     site = next((it for it in section.sites if it.path == "controller_manager_name"), None)
     if site is None:
         return ""
@@ -158,11 +157,10 @@ def _manager(plugin: _Element, section: PluginDefinition, name: str, namespace: 
 
 
 def wheels_in(element: _Element) -> bool:
-    """Return whether a controller of the description with this element may send odometry, and so
-    /tf. Those that do command velocities of joints that turn (ros2_controllers:
-    diff_drive_controller, tricycle_controller, mecanum_drive_controller,
-    omni_wheel_drive_controller and steering_controllers_library,
-    command_interface_configuration)."""
+    """Return whether a controller of this description may send odometry, and so /tf."""
+    # Those that do command velocities of joints that turn (command_interface_configuration of
+    # ros2_controllers: diff_drive_controller, tricycle_controller, mecanum_drive_controller,
+    # omni_wheel_drive_controller and steering_controllers_library).
     root = element.getroottree().getroot()
     joints = {it.get("name"): it for it in root.iter("joint") if it.get("type")}
     systems = list(root.iter("ros2_control"))
@@ -176,7 +174,7 @@ def wheels_in(element: _Element) -> bool:
 
 
 def _turns_on(joint: _Element | None) -> bool:
-    """Return whether it may be a wheel's joint. Limits reached after some turns are an arm's."""
+    """Return whether it may be a wheel's joint, without limits or with wide ones."""
     if joint is None:
         return True
     limit = joint.find("limit") if joint.get("type") == "revolute" else None
@@ -220,8 +218,9 @@ def _rules(home: _Element) -> Iterator[ReadRule]:
 
 
 def _remap_arguments(home: _Element) -> Iterator[_Element]:
-    """Yield the <argument>s that may be remap rules: after -r or --remap between --ros-args and --, and
-    all outside, where rcl takes rules, too (rcl arguments.c: "This syntax is deprecated")."""
+    """Yield the <argument>s that may be remap rules."""
+    # After -r or --remap between --ros-args and --, and all outside, where rcl takes rules, too
+    # (rcl arguments.c: "This syntax is deprecated").
     ros, flag = False, ""
     for element in home.iterfind("argument"):
         text = text_of(element)
@@ -257,9 +256,8 @@ def _endpoints(
     rules: tuple[ReadRule, ...],
     release: str,
 ) -> Iterator[RuntimeName]:
-    """Yield the ends of the node, and of the controllers that it loads. These publish by names of
-    their own: a rule for the manager's node is none for them, and in some releases they take none
-    at all."""
+    """Yield the ends of the node and of the controllers that it loads."""
+    # A controller's own names take no rule for the manager's node; in some releases they take none.
     wide = section.process_wide
     alone = wide and not controller_way(release).of_manager
     taken = (it.rule for it in rules if not (alone or it.rule.node))
@@ -294,7 +292,7 @@ def _asked_for(
 
 
 def holds_topic(site: SiteRow) -> bool:
-    """Return whether its value is a topic or service, or a word that topics are below."""
+    """Return whether its value is a topic or service, or topics are below it."""
     whole = site.form == "whole" and site.role != "keep" and site.when != SENT
     return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
 

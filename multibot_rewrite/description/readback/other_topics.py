@@ -41,9 +41,8 @@ OF_GZ = frozenset({"sensor", "particle_emitter"})
 def resolved(
     host: _Element, section: PluginDefinition, release: str
 ) -> Iterator[tuple[str, str, str]]:
-    """Yield kind, name and parameter of the topics of something that is no ROS 2 node. Names are
-    below the namespace that it puts in front, and below the word that topics are made of; none
-    where those come from the model, whose name each robot has for itself."""
+    """Yield kind, name and parameter of the topics of something that is no ROS 2 node."""
+    # Those named after the model are left out: each robot has its own.
     above = _namespace(host, section)
     if reads_it(section, release) and scoped_namespace(host) != "":
         above = scoped_namespace(host)
@@ -52,7 +51,7 @@ def resolved(
     stems = [site for site in section.sites if site.kinds[:1] == ("stem",) and site.form == "whole"]
     words = [(site.path, value) for site in stems for value in values_of(host, site)]
     if above is not None:
-        yield from ((BELOW, _joined(above, word), path) for path, word in words)
+        yield from ((BELOW, _join(above, word), path) for path, word in words)
     # A word that topics are made of and that is there and empty: it takes the place of the model's
     # name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace")).
     for site in stems:
@@ -63,8 +62,8 @@ def resolved(
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         below = above
         if site.kinds[0] == "subtopic" and stems and above is not None:
-            below = _joined(above, words[0][1]) if words else None
-        yield from ((kind, it, site.path) for it in _full(host, section, site, below))
+            below = _join(above, words[0][1]) if words else None
+        yield from ((kind, it, site.path) for it in _full_names(host, section, site, below))
     # The names in the code of what is no ROS 2 node, as those of ROS 1: roscpp puts the namespace
     # in front of relative ones (names.cpp), and tf's broadcaster has an absolute one (tf2_ros
     # transform_broadcaster.cpp).
@@ -72,42 +71,40 @@ def resolved(
     for wired, path in wired_of(host, section):
         if wired.name not in off and (above is not None or wired.name.startswith("/")):
             kind = SERVICE if wired.role == SERVES else TOPIC
-            name = wired.name if wired.name.startswith("/") else _joined(above or "", wired.name)
+            name = wired.name if wired.name.startswith("/") else _join(above or "", wired.name)
             yield TRANSFORMS_ON if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
 def of_others(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str]]:
-    """Yield name and parameter of the topics that are the world's or unchanged, below the namespace
-    that the plugin puts in front. If that is the model's name it also is before a slash
-    (rotors_simulator gazebo_mavlink_interface.cpp, as PX4's)."""
+    """Yield name and parameter of topics that are the world's or unchanged, below its namespace."""
+    # The model's name may also be before a slash (rotors_simulator gazebo_mavlink_interface.cpp).
     # One without a name gets it from its spawner.
     model = around(host).get("name") or "~"
     of_model = any(it.kinds[:1] == ("stem",) for it in section.sites)
     above = None if of_model else _namespace(host, section)
     for site in filter(is_of_others, section.sites):
         if "model" in section.opens:
-            yield from ((_joined(model, it), site.path) for it in values_of(host, site))
+            yield from ((_join(model, it), site.path) for it in values_of(host, site))
         else:
-            yield from ((it, site.path) for it in _full(host, section, site, above))
+            yield from ((it, site.path) for it in _full_names(host, section, site, above))
 
 
-def _full(
+def _full_names(
     host: _Element, section: PluginDefinition, site: SiteRow, above: str | None
 ) -> Iterator[str]:
-    """Yield the full names at a site, below the namespace of relative ones, without those that are
-    below a node or model which the simulator names."""
+    """Yield the full names at a site, but those below a node or model that the simulator names."""
     of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
     names = values_of(host, site)
     for name in map(as_valid_topic, names) if of_gz else names:
         if name.startswith("/"):
             yield name
         elif above is not None and not name.startswith("~"):
-            yield _joined(above, name)
+            yield _join(above, name)
 
 
 def as_valid_topic(name: str) -> str:
-    """Return the topic that gz-transport makes of a text: it has no ``~``, and unknown characters are
-    removed (gz-transport TopicUtils.cc AsValidTopic, which gz-sim's validTopic and gz-sensors call)."""
+    """Return the topic that gz-transport makes of a text, without unknown characters and ``~``."""
+    # TopicUtils.cc AsValidTopic, which gz-sim's validTopic and gz-sensors call.
     return _NOT_VALID.sub("", name.replace(" ", "_"))
 
 
@@ -122,7 +119,8 @@ def _namespace(host: _Element, section: PluginDefinition) -> str | None:
     return values[0] if values else None if sites else "/"
 
 
-def _joined(above: str, name: str) -> str:
+def _join(above: str, name: str) -> str:
+    """Return an absolute topic below another name."""
     return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")
 
 
@@ -132,8 +130,7 @@ def reads_it(section: PluginDefinition, release: str) -> bool:
 
 
 def scoped_namespace(host: _Element) -> str | None:
-    """Return ``/outer/inner``; ``/`` for the root, empty where no model has one, None where it
-    contains the name that the robot's model is spawned by."""
+    """Return ``/outer/inner`` or ``/``; empty if no model has one, None if its spawner decides."""
     parts: list[str] = []
     own_name = given = False
     for model in host.iterancestors("model", "include"):

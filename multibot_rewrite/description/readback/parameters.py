@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The value of a parameter as its consumer has it: what the file says, else the default, also one that
-the consumer makes of names in the description: of the model, its first link, a sensor.
+"""Reads the value of a parameter as its consumer does: from the file, else the default.
 
-Sources: as ``description/rewriters/own_defaults.py``; sdformat src/parser_urdf.cc (a URDF's root link
-is the first of its model, one called world is the world).
-"""
+Sources: as ``description/rewriters/own_defaults.py``; sdformat src/parser_urdf.cc (a URDF's root
+link is the first of its model, one called world is the world)."""
 
 from __future__ import annotations
 
@@ -49,15 +47,17 @@ def _applies(host: _Element, site: SiteRow) -> bool:
 
 
 def default_of(host: _Element, default: str) -> str:
-    """Return ``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the
-    value of a sibling with its last segment replaced; ``{model}/x``: x below what the model is
-    spawned as, with ``MODEL`` for that. Empty where a name of the description is missing."""
+    """Return a default with the names of the description filled in; empty if one is missing.
+
+    ``a=true,b=?x``: x if these siblings have these texts; ``topic/../x``: the value of a sibling
+    with its last segment replaced; ``{model}/x``: x below what the model is spawned as, with
+    ``MODEL``."""
     conditions, asked, default = default.rpartition("?")
     if asked and not holds(host, conditions):
         return ""
     sibling, derived, last = default.partition("/../")
     if not derived:
-        words = {it: _text_of_word(host, it) for it in _SLOT.findall(default)}
+        words = {it: _text_for_slot(host, it) for it in _SLOT.findall(default)}
         return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
     topic = child_text(host, sibling) or ""
     return f"{topic.rpartition('/')[0]}/{last}" if "/" in topic else last if topic else ""
@@ -98,21 +98,22 @@ def sends_odometry(host: _Element, section: PluginDefinition) -> bool:
 
 
 def _switches(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, bool]]:
+    """Yield parameter, topic and whether it is on, for each switch of a plugin's topics."""
     for switch in section.switches:
         parameter, topic, *usual = switch.split("=")
         yield parameter, topic, is_on(child_text(host, parameter), usual=bool(usual))
 
 
-def _text_of_word(host: _Element, word: str) -> str:
+def _text_for_slot(host: _Element, word: str) -> str:
     if word == "link":
-        return _first_link(host)
+        return _root_link_name(host)
     if word == "sensor":
         sensor = next(host.iterancestors("sensor"), None)
         return sensor.get("name", "") if sensor is not None else ""
     return MODEL[:-1] if word == "model" else child_text(host, word) or ""
 
 
-def _first_link(host: _Element) -> str:
+def _root_link_name(host: _Element) -> str:
     model = around(host)
     if model.tag == "model":
         every = (it.get("name", "") for it in model.iter("link"))

@@ -32,11 +32,11 @@ WITH_TOPICS = (
 
 
 class Reading(NamedTuple):
-    """What a description starts. ``unknown`` are the plugins without plugin definitions, each as
-    its number among the plugins and its library; ``missed`` the frames below a model's name, which
-    are in the tree of no robot, though nothing else of the model sends their transform;
-    ``other_ends`` those of topics that are the world's or left as they are, and of what is below a
-    word that ``names`` have."""
+    """The nodes and names that a description starts.
+
+    ``unknown`` are plugins without definition: number and library. ``missed`` are frames below a
+    model's name, which are in no robot's tree. ``other_ends`` are of topics that are the world's
+    or left as they are, and of topics below one of ``names``."""
 
     nodes: tuple[ReadNode, ...]
     names: tuple[RuntimeName, ...]
@@ -63,14 +63,14 @@ def read_tree(root: _Element, definitions: Definitions) -> Reading:
     hosts, unknown = _hosts(root, definitions)
     nodes = _ros_nodes(hosts, definitions.release)
     with_node = {it.number for it in nodes}
-    names = [*_links(root), *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
-    names += _of_hosts(root, hosts, "plugin", with_node, definitions)
+    names = [*_links(root), *_node_names(nodes), *_without_rules(root, hosts, with_node)]
+    names += _other_names_of_hosts(root, hosts, "plugin", with_node, definitions)
     systems = enumerate(root.iter("ros2_control"))
     known = ((it, number, active.hardware_section(it, definitions)) for number, it in systems)
     hardware = [_Host(it, number, section) for it, number, section in known if section]
-    names += _of_hosts(root, hardware, "ros2_control", (), definitions)
-    names += _of_sensors(root, definitions)
-    names += _of_elements(root, definitions)
+    names += _other_names_of_hosts(root, hardware, "ros2_control", (), definitions)
+    names += _sensor_names(root, definitions)
+    names += _element_names(root, definitions)
     missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(parameters.MODEL))
     heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
     below = (end for it in nodes for end in _endpoints(it, below=True))
@@ -119,7 +119,7 @@ def _ros_nodes(hosts: Iterable[_Host], release: str) -> tuple[ReadNode, ...]:
 def _of_first_senders(
     missed: tuple[RuntimeName, ...], hosts: list[_Host]
 ) -> tuple[RuntimeName, ...]:
-    """Return the names without those of systems whose transform another one sends, or sends first."""
+    """Return the names without those of transforms that another system sends already."""
     numbers = {it.number for it in missed}
     models = {it.number: parameters.around(it.element) for it in hosts}
     sent: set[_Element] = set()
@@ -142,7 +142,7 @@ def _of_first_senders(
     return tuple(it for it in missed if it.number in partly or it.number in first.values())
 
 
-def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
+def _node_names(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
     for node in nodes:
         if node.name:
             yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
@@ -157,8 +157,8 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
 def _without_rules(
     root: _Element, hosts: list[_Host], with_node: Container[int]
 ) -> Iterator[RuntimeName]:
-    """Yield the nodes of ROS 2 plugins that read no <ros>: they have the plugin's name, and no
-    namespace (Plankton ThrusterROSPlugin.cpp, gazebo_ros node.hpp CreateWithArgs)."""
+    """Yield the nodes of ROS 2 plugins without <ros>; they have the plugin's name, no namespace."""
+    # Plankton ThrusterROSPlugin.cpp, gazebo_ros node.hpp CreateWithArgs.
     for host in hosts if root.find(".//plugin/ros") is not None else ():
         is_named = any(it.path == "@name" and "node" in it.kinds for it in host.section.sites)
         if is_named and host.number not in with_node:
@@ -172,7 +172,7 @@ def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:
     yield from (it for it in node.endpoints if not it.off and (it.parameter in stems) == below)
 
 
-def _of_hosts(
+def _other_names_of_hosts(
     root: _Element, hosts: list[_Host], tag: str, nodes: Container[int], definitions: Definitions
 ) -> Iterator[RuntimeName]:
     for host in hosts:
@@ -184,14 +184,14 @@ def _of_hosts(
 
 
 def _is_of_either(host: _Host) -> bool:
-    """Return whether ROS 1 may load it, too. Its plugin of that name takes no rules, and reads a
-    namespace in addition to its other parameters; only ROS 2 reads a <ros>."""
+    """Return whether ROS 1 may load a plugin as well as ROS 2, which alone reads a <ros>."""
+    # ROS 1's takes no rules and reads a namespace in addition to its other parameters.
     if host.section.ros or host.element.find("ros") is not None:
         return False
     return any(it.kinds == ("namespace",) and "/" not in it.path for it in host.section.sites)
 
 
-def _of_sensors(root: _Element, definitions: Definitions) -> Iterator[RuntimeName]:
+def _sensor_names(root: _Element, definitions: Definitions) -> Iterator[RuntimeName]:
     for number, sensor in enumerate(root.iter("sensor")):
         # What is known about every sensor, and about those of this type.
         of_type = definitions.find("sensor", sensor.get("type", "").strip())
@@ -203,7 +203,7 @@ def _of_sensors(root: _Element, definitions: Definitions) -> Iterator[RuntimeNam
             yield from _opened_names(host, "sensor")
 
 
-def _of_elements(root: _Element, definitions: Definitions) -> Iterator[RuntimeName]:
+def _element_names(root: _Element, definitions: Definitions) -> Iterator[RuntimeName]:
     for tag, held in WITH_TOPICS:
         if next(root.iter(held), None) is None:
             continue
@@ -242,8 +242,8 @@ def _opened_names(host: _Host, tag: str) -> Iterator[RuntimeName]:
 
 
 def _world_lookups(root: _Element, host: _Host, definitions: Definitions) -> Iterator[RuntimeName]:
-    """Yield names of things in this file that a plugin or system looks up in the whole world. A name
-    that begins with the robot's own model is yielded as the name of that model."""
+    """Yield names of things in this file that a plugin or system looks up in the whole world."""
+    # A name that begins with the robot's own model is yielded as the name of that model.
     kind, tag = host.section.unique, str(host.element.tag)
     (every,) = definitions.find("element", tag)
     sites = [it for it in (*every.sites, *host.section.sites) if it.role != "keep"]

@@ -1,3 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports about a description: changes, explanations, a xacro's arguments and suggested plugin
-definitions."""
+"""Reports about a description: changes, explanations, xacro arguments, suggested definitions."""

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known about the values on one line of a document or of a xacro file, which pieces make
-them, and what becomes of them.
-"""
+"""Explains the values on one line of a document or xacro: what makes them, and their new names."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -88,7 +86,7 @@ def explain_line(
     """Return everything that starts on ``line``, in source order; empty where nothing does."""
     plan = make_plan(inventory, naming)
     found = [
-        *_claims(inventory, plan, naming, robot, line),
+        *_explained_claims(inventory, plan, naming, robot, line),
         *_others(inventory, tree, line),
     ]
     found += _inserted(inventory, plan, robot, line)
@@ -103,13 +101,13 @@ def _source(tree: Tree, site: SiteRow) -> str:
     return next((it.source for it in sections if it.source and site in it.sites), "")
 
 
-def _claims(
+def _explained_claims(
     inventory: Inventory, plan: Plan, naming: Naming, robot: str, line: int
 ) -> Iterator[Explanation]:
     recomputed = {claim.start: new.replace(ROBOT_SLOT, robot) for claim, new in plan.collisions}
     values = zip(inventory.claims, inventory.names, plan.renames.values, strict=True)
     for claim, names, spelling in values:
-        place = _place(inventory, claim.start, claim.attribute, claim.value)
+        place = _position(inventory, claim.start, claim.attribute, claim.value)
         if place[0] != line:
             continue
         new = respelled(claim.value, spelling, robot)
@@ -143,7 +141,7 @@ def _reasons(
 
 
 def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
-    """Return why a name is not renamed; empty where it is, or where only its form forbids it."""
+    """Return why a name is not renamed; empty if it is, or if only its form prevents it."""
     bare = name.strip("/")
     reasons = (
         (not kind, "not declared, so it is not renamed"),
@@ -167,7 +165,7 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
         slots = [(str(key), str(value)) for key, value in element.items()]
         slots.append(("", text_of(element)))
         for attribute, value in slots:
-            place = _place(inventory, start, attribute, value)
+            place = _position(inventory, start, attribute, value)
             if value and place[0] == line and (start, attribute) not in claimed:
                 site = kept(element, attribute, tree, {})
                 name = mentioned(value, names)
@@ -201,7 +199,7 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
                 yield Explanation(*place, path, name, None, reason, name, (text,))
 
 
-def _place(inventory: Inventory, start: int, attribute: str, value: str) -> tuple[int, int]:
+def _position(inventory: Inventory, start: int, attribute: str, value: str) -> tuple[int, int]:
     source = inventory.document.source
     slot = value_slot(source, start, attribute, value) if value else None
     return locate(source, slot[0] if slot else start)
@@ -218,9 +216,10 @@ def explain_source(
     trust: bool,
     explaining: Callable[[str], tuple[Document, OnLine]],
 ) -> list[Explanation]:
-    """Return the values that ``line`` of the file ``path`` makes: elements on it, and values with a
-    piece of it, as of a macro's call; for a file that is included, in a description that includes it.
-    Raises InputError if none of them can be read."""
+    """Return the values that ``line`` of ``path`` makes, there or in a description including it.
+
+    These are elements on the line, and values with a piece of it, as of a macro's call. Raises
+    InputError if no description with the file can be read."""
     reach = TRUSTED if trust else BOUNDED
     failed: list[InputError] = []
     wholes = (path, *whole_robots(path))
@@ -241,7 +240,7 @@ def explain_source(
 
 
 class _Line(NamedTuple):
-    """A line of a file that is read for an expansion."""
+    """A line of a file that an expansion reads."""
 
     read: Expansion
     file: str
@@ -259,7 +258,7 @@ class _Line(NamedTuple):
 
 
 def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explanation]:
-    """Yield the values that a line makes, each at its place there."""
+    """Yield explanations of the values that a line makes, each at its place there."""
     for number, element in enumerate(document.elements):
         origin = it.read.origins.of(number)
         written = None

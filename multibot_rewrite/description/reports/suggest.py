@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""First plugin definitions for what a description loads and nothing knows: guessed, each with its
-why."""
+"""Guesses first plugin definitions for what a description loads and nothing knows."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -113,10 +112,10 @@ def loaded_by(host: Host) -> Loaded | None:
 def _section_name(type_: str, element: "_Element") -> str:
     """Return the first name by which the element is looked up and that a section can have."""
     keys = tree.plugin_keys(element) if type_ == "plugin" else tree.hardware_keys(element)
-    return next((key for key in keys if key != tree.ANY_WITH_ROS and _can_head(type_, key)), "")
+    return next((key for key in keys if key != tree.ANY_WITH_ROS and _is_header(type_, key)), "")
 
 
-def _can_head(type_: str, name: str) -> bool:
+def _is_header(type_: str, name: str) -> bool:
     try:
         return read_header("", f"{type_} {name}]") == (type_, name)
     except DefinitionsError:
@@ -164,7 +163,7 @@ def _is_path(path: str) -> bool:
 def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
     """Return the best guess of all values at one path, with the kinds that others of them add."""
     word = tag_kind(path)
-    guesses = [_guess(value, word, declared) for value in values]
+    guesses = [_guess_value(value, word, declared) for value in values]
     made = [it for it in guesses if it is not None]
     best = max(made, key=lambda it: (not it.by_tag, it.form != "whole"), default=None)
     if best is None or not _is_path(path):
@@ -178,7 +177,7 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
 
 
 def tag_kind(path: str) -> str:
-    """Return the kind that the words of a path suggest: ``left/jointName`` a joint; empty for none."""
+    """Return the kind of name that a path suggests: ``left/jointName`` a joint; or empty."""
     steps, attribute = split_path(path)
     names = [split_step(step)[2] or split_step(step)[0] for step in steps]
     for name in reversed([*names, attribute]):
@@ -191,7 +190,7 @@ def tag_kind(path: str) -> str:
     return ""
 
 
-def _guess(value: str, word: str, declared: Declared) -> Guess | None:
+def _guess_value(value: str, word: str, declared: Declared) -> Guess | None:
     by_value = _by_value(value, declared)
     if by_value is None or (word in _GRAPH and by_value.form != "remap"):
         return _by_tag(value, word)
@@ -209,20 +208,20 @@ def _by_value(value: str, declared: Declared) -> Guess | None:
     for form, names in _readings(value):
         found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
         if named := [(kind, name) for kind, name in found.items() if name]:
-            return Guess(tuple(kind for kind, _ in named), form, _held_names(value, named))
+            return Guess(tuple(kind for kind, _ in named), form, _held_names_text(value, named))
     if value.startswith("/") and value[1:] in declared["link"]:
         return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")
     return None
 
 
-def _held_names(value: str, named: Sequence[tuple[str, str]]) -> str:
+def _held_names_text(value: str, named: Sequence[tuple[str, str]]) -> str:
     if all(name == value for _, name in named):
         return f"{shown(value)} is a {' and a '.join(kind for kind, _ in named)} here"
     return f"{shown(value)} holds {' and '.join(f'the {k} {shown(name)}' for k, name in named)}"
 
 
 def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
-    """Yield forms that the value may have, and the names in it then."""
+    """Yield the forms that a value may have, each with the names in it."""
     yield "whole", [value]
     if _NO_NAME.match(value):
         return
@@ -237,7 +236,7 @@ def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
 
 
 def _by_tag(value: str, word: str) -> Guess | None:
-    """Return the guess by the tag, if the value can be a name at all."""
+    """Return the guess by the tag, if the value can be a name."""
     if not word or _NO_NAME.match(value):
         return None
     several = len(value.replace(",", " ").split()) > 1
@@ -255,7 +254,7 @@ def shown(value: str) -> str:
 def definitions_text(sections: Iterable[SuggestedSection], file: str) -> str:
     """Return a usable file of plugin definitions; without sections only comments."""
     name = " ".join(file.split())
-    parts = [_text(section, name.rpartition("/")[2]) for section in sections]
+    parts = [_section_text(section, name.rpartition("/")[2]) for section in sections]
     if not parts:
         return f"# Nothing to suggest: no plugin and no hardware class of {name} is unknown.\n"
     head = (
@@ -265,15 +264,15 @@ def definitions_text(sections: Iterable[SuggestedSection], file: str) -> str:
     return "\n".join([head, *parts])
 
 
-def _text(section: SuggestedSection, file: str) -> str:
+def _section_text(section: SuggestedSection, file: str) -> str:
     if not section.name:
         return f"# no section can be called {shown(section.label)}\n"
     head = [f"[{section.type} {section.name}]", f"about: guessed from {file}, not checked"]
     shared = [f"with: {' '.join(section.blocks)}"] if section.blocks else []
-    return "\n".join([*head, *shared, *map(_line, section.rows)]) + "\n"
+    return "\n".join([*head, *shared, *map(_row_text, section.rows)]) + "\n"
 
 
-def _line(row: SuggestedRow) -> str:
+def _row_text(row: SuggestedRow) -> str:
     if row.guess is None:
         return f"# {' '.join(row.path.split())}: {shown(row.value)}"
     form = f" form={row.guess.form}" if row.guess.form != "whole" else ""

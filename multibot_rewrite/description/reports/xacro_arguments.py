@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which argument of a xacro goes into which names: found by expanding it with another word for each."""
+"""Finds which xacro argument goes into which names, by expanding with other values."""
 
 import re
 import time
@@ -35,7 +35,7 @@ _SEPARATORS = "/_-."
 
 
 class Use(NamedTuple):
-    """What an argument is in names of one kind: ``how`` is prefix, postfix, whole or inside.
+    """How an argument is in names of one kind: ``how`` is prefix, postfix, whole or inside.
 
     ``separator`` is what the file itself puts between the argument and the rest; ``names`` of the
     ``total`` names of the kind have the argument, ``example`` is one, with ``{robot}`` in its place.
@@ -66,13 +66,12 @@ class Argument(NamedTuple):
 
     @property
     def value(self) -> str:
-        """What gives every robot its own names by this argument; empty where it is not for that, or
-        misses a link: the description would have no tree. Raises nothing."""
+        """The value for robots; empty if it is not for names or misses a link. Raises nothing."""
         return "" if self.missed else self.word
 
     @property
     def word(self) -> str:
-        """The same, whatever it misses.
+        """The value for robots; empty if the argument is not for names. Raises nothing.
 
         It is for that if it goes before or behind names or is a namespace, and is empty by default or
         in every link and joint: lbr of lbr_link_0 is in the place of the robot's name. So is that of a
@@ -107,8 +106,7 @@ class Argument(NamedTuple):
 
 
 class XacroArguments(NamedTuple):
-    """The arguments of a file, in the order in which they are declared; ``untried`` were too many or
-    not wanted, ``read`` are the files that were read."""
+    """A file's arguments as declared, those ``untried`` (too many, not wanted), and files read."""
 
     file: str
     arguments: tuple[Argument, ...]
@@ -117,19 +115,18 @@ class XacroArguments(NamedTuple):
 
     @property
     def for_robots(self) -> Mapping[str, str]:
-        """A value for every argument that names robots, and is called so: a title in front of a name is
-        none. ``inspect`` offers them, ``init`` writes them."""
+        """A value for every argument that names robots and has a name that says so."""
         named = (it for it in self.arguments if it.value and names_robots(it.name))
         return {it.name: it.value for it in named}
 
     @property
     def words(self) -> tuple[str, ...]:
-        """``NAME:=VALUE`` for each of them."""
+        """``NAME:=VALUE`` for each argument of ``for_robots``."""
         return tuple(f"{name}:={value}" for name, value in self.for_robots.items())
 
 
 def names_robots(name: str) -> bool:
-    """Return whether an argument of this name is for a robot's own names, as vendors have it."""
+    """Return whether vendors use an argument of this name for a robot's own names."""
     return _NAMING.search(name) is not None
 
 
@@ -141,12 +138,12 @@ def find_arguments(
     reach: Reach = BOUNDED,
     wanted: Callable[[str], bool] = bool,
 ) -> XacroArguments:
-    """Return the arguments of a xacro file; ``given`` are values for some, and only those of ``wanted``
-    names are tried. Raises InputError if the file does not expand with these."""
+    """Return the arguments of a xacro file whose name is ``wanted``; ``given`` are some values."""
+    # Raises InputError if the file does not expand with these.
     end = clock() + SECONDS
     read = expand_traced(path, read_file(path), given, None, reach)
     declared = {**_declared(read.sources), **given}
-    plain = _parts(collect(read_document(read.data, path), tree))
+    plain = _links_and_joints(collect(read_document(read.data, path), tree))
     found: dict[str, Argument] = {}
     for name, default in [it for it in declared.items() if wanted(it[0])][:MOST]:
         if clock() > end:
@@ -161,10 +158,10 @@ def find_arguments(
             continue
         values = [it for it in slot_values(inventory.document.root) if _MARK in it]
         claimed = sum(_MARK in claim.value for claim in inventory.claims)
-        renamed = plain - _parts(inventory)
+        renamed = plain - _links_and_joints(inventory)
         names = chain.from_iterable(inventory.names)
         missed = next((it.text for it in names if it.text in renamed), "")
-        others, uses = max(len(values) - claimed, 0), tuple(_uses(inventory))
+        others, uses = max(len(values) - claimed, 0), tuple(_uses_of_mark(inventory))
         found[name] = Argument(name, default, uses, others, "", missed)
     untried = tuple(it for it in declared if it not in found)
     return XacroArguments(path, tuple(found.values()), untried, read.read)
@@ -187,12 +184,12 @@ def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
     return found
 
 
-def _parts(inventory: Inventory) -> frozenset[str]:
+def _links_and_joints(inventory: Inventory) -> frozenset[str]:
     """Return the declared links and joints."""
     return frozenset(it for kind in PARTS for it in inventory.declared.get(kind, ()))
 
 
-def _uses(inventory: Inventory) -> Iterator[Use]:
+def _uses_of_mark(inventory: Inventory) -> Iterator[Use]:
     every = chain.from_iterable(inventory.names)
     names = dict.fromkeys((it.kind or it.kinds[0], it.text) for it in every)
     totals = Counter(kind for kind, _ in names)

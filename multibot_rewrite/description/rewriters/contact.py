@@ -27,8 +27,7 @@ LUMP = "_fixed_joint_lump__"
 def respell_collisions(
     root: etree._Element, claims: Iterable[Claim], declared: Declared, respell: Respell
 ) -> list[tuple[Claim, str]]:
-    """Return each contact collision whose name changes, with its new text. ``respell(kind, name)``
-    is the new spelling of a link, joint or shape."""
+    """Return each renamed contact collision and its text, by the new names of ``respell``."""
     contacts = [claim for claim in claims if claim.site.form == "collision"]
     if not contacts:
         return []
@@ -66,7 +65,7 @@ def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
 
 
 def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tuple[str, int], str]:
-    """Return the name of each collision that ends up in link ``left``, by link and index."""
+    """Return the names of collisions that end up in link ``left``, by link and index."""
     found: dict[tuple[str, int], str] = {}
     there = spell("link", left)
     waiting = [left]

@@ -72,12 +72,11 @@ def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]
 
 
 def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """Return the parts of SDF's ``model::link``: the last piece is the name, those before it are
-    models. There is none where the first model is not of this file, and none behind an included
-    model: their names are declared elsewhere. A link itself may be called ``a::b``: SDF 1.7 is
-    flattened so."""
+    """Return the parts of SDF's ``model::link``: models, and the name as the last piece."""
+    # No parts where the first model is not of this file, and none behind an included model: their
+    # names are declared elsewhere. A link may be called ``a::b``: SDF 1.7 is flattened so.
     scopes: list[NamePart] = []
-    for at, name in _scoped_parts(value):
+    for at, name in _names_with_starts(value):
         rest = value[at:].rstrip()
         if rest == name or any(rest in declared.get(kind, ()) for kind in kinds):
             return (*scopes, NamePart(at, rest, kinds, True))
@@ -95,7 +94,7 @@ def is_included(model: str, declared: Declared) -> bool:
     return claim is not None and not claim.attribute
 
 
-def _scoped_parts(value: str) -> Iterator[tuple[int, str]]:
+def _names_with_starts(value: str) -> Iterator[tuple[int, str]]:
     at = len(value) - len(value.lstrip())
     for name in value.strip().split("::"):
         if name:
@@ -104,15 +103,14 @@ def _scoped_parts(value: str) -> Iterator[tuple[int, str]]:
 
 
 def words(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """Return every word of a text such as ``(key value ...)`` that the file declares."""
+    """Return the declared names in a text such as ``(key value ...)``."""
     found = ((word.start(), word[0]) for word in _WORD.finditer(value))
     known = ((at, text, [k for k in kinds if text in declared.get(k, ())]) for at, text in found)
     return tuple(NamePart(at, text, tuple(of), True) for at, text, of in known if of)
 
 
 def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """Return the parts of ``link/light`` or ``link::visual``: a name of the first kind, and the
-    rest where the file declares that as one of the others."""
+    """Return the parts of ``link/light``: a name of the first kind, the rest if it is declared."""
     parts, at = _owner(value, kinds[:1], declared)
     name = value[at:].rstrip()
     known = tuple(kind for kind in kinds[1:] if name in declared.get(kind, ()))
@@ -120,30 +118,26 @@ def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ..
 
 
 def member(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """Return the parts of ``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``: a
-    name in a link. If none of the names before it is a link, the first must be a model of the
-    file."""
+    """Return the parts of ``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``."""
+    # If none of the names before the last one is a link, the first must be a model of the file.
     if not _OWNED.search(value):
         return whole(value, kinds, declared)
     scopes, at = _owner(value, ("link",), declared)
     name = value[at:].rstrip()
     if name and scopes and scopes[-1].text in declared["link"]:
         return (*scopes, NamePart(at, name, kinds))
-    (start, model), *below = _scoped_parts(value)
+    (start, model), *below = _names_with_starts(value)
     inside = member(value[below[0][0] :], kinds, declared) if below[1:] else ()
     moved = (part._replace(at=part.at + below[0][0]) for part in inside)
     return (NamePart(start, model, ("model",), True), *moved) if inside else ()
 
 
 def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[NamePart], int]:
-    """Return the models before ``::`` and the longest declared name after them, and the start of the
-    rest.
-
-    Text before the first declared model is a world.
-    """
+    """Return the models before ``::`` and the longest declared name, and the start of the rest."""
+    # Text before the first declared model is a world.
     at = len(value) - len(value.lstrip())
     parts = []
-    pieces = list(_scoped_parts(value))
+    pieces = list(_names_with_starts(value))
     for start, name in pieces[:-1]:
         if name in declared["model"] and not any(name in declared.get(k, ()) for k in kinds):
             parts.append(NamePart(start, name, ("model",), True))

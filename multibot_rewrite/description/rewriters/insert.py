@@ -25,7 +25,7 @@ from multibot_rewrite.description.rewriters.plugin_definitions import (
     split_path,
     split_step,
 )
-from multibot_rewrite.description.rewriters.remap_rules import named, ros_home, rules_in
+from multibot_rewrite.description.rewriters.remap_rules import named, relative, ros_home, rules_in
 from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT, respelled, spell_default
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.knowledge.controller_ways import controller_way
@@ -65,49 +65,50 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
         home = ros_home(host, section)
         # What stands in the host itself has no step for it in its path.
         hidden = "ros/" if home is host else ""
-        found = list(_defaults(host, section, declared, naming, hidden))
+        found = list(_of_defaults(host, section, declared, naming, hidden))
         if any(site.path == "ros/remapping" for site in section.sites):
             found += _remaps(host, section, naming, home)
+            found += _relative(host, section, naming, home)
         if naming.separators:
-            found += _of_ros_1(host, section, naming)
+            found += _ros_1_namespaces(host, section, naming)
         if section.helper and naming.separators and naming.topics != NAMESPACE:
-            found += _apart(host, section, declared, naming, home)
+            found += _namespace_without_rules(host, section, declared, naming, home)
         every += (item for item in found if item.shared or host not in silent)
     return every
 
 
-def _of_ros_1(
+def _ros_1_namespaces(
     host: etree._Element, section: PluginDefinition, naming: Naming
 ) -> Iterator[Insertion]:
-    """Yield the namespace of a ROS 1 plugin that is the root or the model's name, which the text does
-    not have. With namespaces both are inserted, otherwise only the first."""
+    """Yield the namespace of a ROS 1 plugin if it would be the root or the model's name."""
+    # With a layout of namespaces both are inserted, otherwise only the first.
     for site in section.sites if has_own_names(section) else ():
         if site.kinds != ("namespace",) or site.default or site.form != "whole":
             continue
         there = host.find(site.path)
         if there is not None and not text_of(there) and site.empty != "model":
-            made = _insertion(host, site.path, "namespace", "/", f"/{ROBOT_SLOT}")
+            made = _insertion_at(host, site.path, "namespace", "/", f"/{ROBOT_SLOT}")
             yield _filling(made, there, site.path)
         elif there is None and naming.topics == NAMESPACE:
-            made = _insertion(host, site.path, "model", SHOWN, f"/{ROBOT_SLOT}")
+            made = _insertion_at(host, site.path, "model", SHOWN, f"/{ROBOT_SLOT}")
             yield made._replace(shared=False)
 
 
-def _apart(
+def _namespace_without_rules(
     host: etree._Element,
     section: PluginDefinition,
     declared: Declared,
     naming: Naming,
     home: etree._Element | None,
 ) -> Iterator[Insertion]:
-    """Yield a namespace for a node that takes no rules, and one rule that keeps the plugin's own node
-    in its place. Rules for all nodes would be those of the first robot in the process."""
+    """Yield a namespace for a node that takes no rules, and a rule that keeps the plugin's own."""
+    # Rules for all nodes would be those of the first robot in the process.
     if any(it.source == "__ns" and it.node for it in rules_in(home)):
         return
     parent, wrap = (host, "ros") if home is None else (home, "")
     given = "" if home is None else text_at(home, "namespace").strip()
     if not given:
-        made = _insertion(parent, "namespace", "node", section.helper, f"/{ROBOT_SLOT}")
+        made = _insertion_at(parent, "namespace", "node", section.helper, f"/{ROBOT_SLOT}")
         there = parent.find("namespace") if home is not None else None
         yield made._replace(wrap=wrap) if there is None else _filling(made, there, "namespace")
     site = next(it for it in section.sites if it.kinds[:1] == ("node",) and it.default)
@@ -126,7 +127,7 @@ def lacks_namespace(
         return False
     hidden = "ros/" if ros_home(host, section) is host else ""
     asked = section._replace(sites=sites)
-    return any(it.kind == "namespace" for it in _defaults(host, asked, declared, naming, hidden))
+    return any(it.kind == "namespace" for it in _of_defaults(host, asked, declared, naming, hidden))
 
 
 def without(item: Insertion, release: str) -> str:
@@ -140,13 +141,14 @@ def without(item: Insertion, release: str) -> str:
     return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
 
 
-def _defaults(
+def _of_defaults(
     host: etree._Element,
     section: PluginDefinition,
     declared: Declared,
     naming: Naming,
     hidden: str,
 ) -> Iterator[Insertion]:
+    """Yield the defaults of a plugin that must differ for each robot."""
     for site in section.sites:
         default = default_of(host, site.default, naming) if site.default else ""
         if not default:
@@ -173,7 +175,7 @@ def _defaults(
         kind = spelling[0].kind if spelling else site.kinds[0]
         shared = not of_model and unset == default
         old = default.replace(MODEL, SHOWN) if of_model else default
-        made = _insertion(host, path, kind, old, new)._replace(shared=shared)
+        made = _insertion_at(host, path, kind, old, new)._replace(shared=shared)
         yield made if there is None else _filling(made, there, path)
 
 
@@ -183,7 +185,7 @@ def query(step: str) -> str:
     return f"{tag}[@{attribute}='{value}']" if attribute else tag
 
 
-def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -> Insertion:
+def _insertion_at(host: etree._Element, path: str, kind: str, old: str, new: str) -> Insertion:
     steps, attribute = split_path(path)
     parent, wrap = host, ""
     for step in steps[:-1]:
@@ -236,10 +238,24 @@ def _remaps(
         yield made._replace(of_controllers=of_controllers)
 
 
+def _relative(
+    host: etree._Element, section: PluginDefinition, naming: Naming, home: etree._Element | None
+) -> Iterator[Insertion]:
+    """Yield a rule without the namespace in front of each that has it. Of a process only the rules of
+    its first robot count, so they have to be the same for all robots."""
+    rules = rules_in(home) if home is not None and naming.topics == NAMESPACE else []
+    there = {it.source for it in rules}
+    for it in rules:
+        old, _, new = relative(it, host, section, naming).partition(":=")
+        if old and home is not None and old not in there:
+            made = Insertion(home, "", f"<remapping>{old}:={new}</remapping>", "topic", old, new)
+            yield made._replace(of_controllers=True)
+
+
 def _remap_target(topic: str, naming: Naming) -> str:
-    """Return the target of a topic's rule, always relative: gz_ros2_control makes a robot's rules
-    process-wide, and a relative target still ends in each robot's own namespace. Empty if it may
-    stay."""
+    """Return the relative target of a topic's rule; empty if the topic may stay."""
+    # A robot's rules in gz_ros2_control are process-wide; a relative target still is in its
+    # namespace.
     relative = topic.lstrip("/")
     if topic.startswith("~") or relative in naming.shared_topics:
         return ""

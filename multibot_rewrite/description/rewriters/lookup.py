@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sections of the plugin definitions for a person: found by whatever name is at hand, and what they
-say."""
+"""Finds plugin definitions by any name that a user may give, and says what they contain."""
 
 from __future__ import annotations
 
@@ -14,8 +13,8 @@ from multibot_rewrite.description.rewriters.tree import library_key
 
 
 def look_up(definitions: Definitions, name: str, types: Sequence[str]) -> list[PluginDefinition]:
-    """Return the sections of these types that ``name`` means: a library file in any spelling, a class,
-    an element (``sensor`` also finds ``robot.sensor``, after it), a sensor type or a block."""
+    """Return the definitions of these types for a library, class, element, sensor type or block."""
+    # ``sensor`` also finds ``robot.sensor``, after it.
     keys = spellings(name)
     found = [
         section

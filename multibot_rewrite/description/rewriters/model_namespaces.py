@@ -50,8 +50,7 @@ def is_model_namespace(site: SiteRow) -> bool:
 
 
 def below_models(claims: list[Claim], source: bytes, release: str) -> list[Claim]:
-    """Return the claims of a document for ``release``: without the namespaces of models if these are
-    not read, otherwise with relative topics below them as subtopics."""
+    """Return a release's claims; if it reads models' namespaces, topics are subtopics of them."""
     if b"namespace" not in source:
         return claims
     made = []
@@ -75,19 +74,19 @@ def _subtopic(site: SiteRow) -> SiteRow:
 def own_namespaces(
     claims: list[Claim], hosts: Iterable[tuple[_Element, PluginDefinition]]
 ) -> list[Claim]:
-    """Return the claims for a layout without namespaces. A plugin's namespace is then a word like any
-    other if nothing else keeps robots apart: relative names in the code of a ROS 1 plugin (a node of
-    gzserver has no rules of its own, roscpp names.cpp) and a ``helper``."""
+    """Return the claims for a layout without namespaces, with some plugins' as renamed names."""
+    # So if nothing else keeps robots apart: relative names in the code of a ROS 1 plugin (a node of
+    # gzserver has no rules of its own, roscpp names.cpp) and a ``helper``.
     fixed = {it for it, section in hosts if section.helper or has_own_names(section)}
-    return [_word_of(it, fixed) for it in claims] if fixed else claims
+    return [_as_renamed_name(it, fixed) for it in claims] if fixed else claims
 
 
-def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
+def _as_renamed_name(claim: Claim, plugins: Container[_Element]) -> Claim:
     whole = claim.site.form in ("whole", "below") and claim.value.strip()
     if claim.site.kinds != ("namespace",) or not whole:
         return claim
     plugin = next(claim.element.iterancestors("plugin"), None)
-    return claim._replace(site=_as_stem(claim.site)) if plugin in plugins else claim
+    return claim._replace(site=_stem_site(claim.site)) if plugin in plugins else claim
 
 
 def has_own_names(section: PluginDefinition) -> bool:
@@ -99,7 +98,7 @@ def has_own_names(section: PluginDefinition) -> bool:
 
 
 @cache
-def _as_stem(site: SiteRow) -> SiteRow:
+def _stem_site(site: SiteRow) -> SiteRow:
     return site._replace(kinds=("stem",), namespaced=False)
 
 
@@ -136,8 +135,7 @@ STEM = ("stem",)
 
 
 def names_in_topics(claims: Iterable[Claim], declared: Declared, of_models: bool) -> Rules:
-    """Return the names in each Gazebo topic that is built from names, by the number of the claim.
-    ``of_models`` tells whether models get other names."""
+    """Return the names in each Gazebo topic built from names; ``of_models``: models are renamed."""
     stems: Stems | None = None
     found: dict[int, tuple[NamePart, ...]] = {}
     for at, claim in enumerate(claims):
@@ -163,7 +161,7 @@ def given_topics(claims: Iterable[Claim]) -> frozenset[str]:
 
 
 def words_of(claims: Iterable[Claim]) -> Stems:
-    """Return the words that systems build topics from, each with the joints that are named with it."""
+    """Return the names that systems build topics from, each with its joints."""
     beside: dict[object, list[str]] = defaultdict(list)
     words: list[tuple[str, object]] = []
     for claim in claims:
@@ -180,7 +178,7 @@ def words_of(claims: Iterable[Claim]) -> Stems:
 
 
 def parts_of(value: str, stems: Stems, declared: Declared) -> Iterator[NamePart]:
-    """Yield the names in a topic, in order; none if it begins with no model or word of this file."""
+    """Yield the names in a topic, in order; none if its first name is not of this file."""
     bare = len(value) - len(value.lstrip().lstrip("/"))
     head = _HEAD.match(value, bare)
     at = head.end() if head else bare

@@ -55,11 +55,11 @@ def _condition_holds(host: etree._Element, condition: str) -> bool:
 
 def filled(host: etree._Element, default: str) -> str:
     """Return the default with names filled in (``MODEL``: the model's); empty if one is missing."""
-    words = {it: _own_link(host, it) for it in _SLOT.findall(default)}
+    words = {it: _own_name_for(host, it) for it in _SLOT.findall(default)}
     return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
 
 
-def _own_link(host: etree._Element, word: str) -> str:
+def _own_name_for(host: etree._Element, word: str) -> str:
     if word == "model":
         return MODEL[:-1]
     if word == "sensor":
@@ -84,11 +84,8 @@ def model_of(host: etree._Element) -> etree._Element:
 
 
 def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
-    """Return the systems that would send a transform which another one of their model sends, and those
-    of nested models, which robot_state_publisher does not know.
-
-    Their frames stay below the model's name, where they do not collide.
-    """
+    """Return systems whose transform another one of their model sends, or of nested models."""
+    # Their frames stay below the model's name, where they do not collide.
     sections = dict(hosts)
     senders = [it for it, section in sections.items() if frame_sites(it, section, naming)]
     given = {it for it in senders if any(text_at(it, at.path) for at in _of_model(sections[it]))}

@@ -72,7 +72,7 @@ class Pattern:
             raise PatternError(f"longer than {_LENGTH} characters")
         pieces = deque(piece[0] for piece in pieces_of(_bytes(pattern)))
         self._states: list[_State] = [(None, ())]
-        first = _alternatives(pieces, 0)(self._states, 0)
+        first = _parse_alternatives(pieces, 0)(self._states, 0)
         if pieces:
             raise PatternError("a bracket is not opened")
         self._first = self._reached((first,), {_BEGIN})
@@ -96,7 +96,7 @@ class Pattern:
         return 0 in self._reached(here, {_END})
 
     def _reached(self, states: Iterable[int], places: Container[str]) -> frozenset[int]:
-        """Return these states and all that follow without a character."""
+        """Return these states and all that follow without reading a character."""
         found = set(states)
         waiting = list(found)
         while waiting:
@@ -113,22 +113,22 @@ def _bytes(text: str) -> str:
     return text.encode("utf-8", "surrogateescape").decode("latin-1")
 
 
-def _alternatives(pieces: deque[str], depth: int) -> _Piece:
+def _parse_alternatives(pieces: deque[str], depth: int) -> _Piece:
     if depth > _DEPTH:
         raise PatternError(f"nested deeper than {_DEPTH} levels")
-    ways = [_row(pieces, depth)]
+    ways = [_parse_sequence(pieces, depth)]
     while pieces and pieces[0] == "|":
         pieces.popleft()
-        ways.append(_row(pieces, depth))
-    return lambda states, after: _add(states, None, *(way(states, after) for way in ways))
+        ways.append(_parse_sequence(pieces, depth))
+    return lambda states, after: _add_state(states, None, *(way(states, after) for way in ways))
 
 
-def _row(pieces: deque[str], depth: int) -> _Piece:
+def _parse_sequence(pieces: deque[str], depth: int) -> _Piece:
     row: list[_Piece] = []
     while pieces and pieces[0] not in "|)":
-        piece = _atom(pieces.popleft(), pieces, depth)
+        piece = _parse_atom(pieces.popleft(), pieces, depth)
         while pieces and _is_count(pieces[0]):
-            piece = _times(piece, *_counts(pieces.popleft()))
+            piece = _repeated(piece, *_least_and_most(pieces.popleft()))
             # As few as possible: the same names.
             if pieces and pieces[0] == "?":
                 pieces.popleft()
@@ -142,9 +142,9 @@ def _row(pieces: deque[str], depth: int) -> _Piece:
     return add
 
 
-def _atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
+def _parse_atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
     if piece in ("(", "(?:"):
-        inner = _alternatives(pieces, depth + 1)
+        inner = _parse_alternatives(pieces, depth + 1)
         if not pieces:
             raise PatternError("a bracket is not closed")
         pieces.popleft()
@@ -152,14 +152,14 @@ def _atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
     if piece in (_BEGIN, _END):
         if pieces and _is_count(pieces[0]):
             raise PatternError(f"{piece} cannot be repeated")
-        return lambda states, after: _add(states, piece, after)
+        return lambda states, after: _add_state(states, piece, after)
     if _is_count(piece) or (piece[0] == "[" and not _WHOLE_CLASS.fullmatch(piece)):
         raise PatternError(f"{piece} repeats nothing, or is not closed")
     characters = _matched_characters(piece)
-    return lambda states, after: _add(states, characters, after)
+    return lambda states, after: _add_state(states, characters, after)
 
 
-def _add(states: list[_State], over: frozenset[str] | str | None, *behind: int) -> int:
+def _add_state(states: list[_State], over: frozenset[str] | str | None, *behind: int) -> int:
     if len(states) > _STATES:
         raise PatternError("too much is repeated")
     states.append((over, behind))
@@ -170,7 +170,7 @@ def _is_count(piece: str) -> bool:
     return piece in _REPEATS or piece[0] == "{"
 
 
-def _counts(count: str) -> tuple[int, int | None]:
+def _least_and_most(count: str) -> tuple[int, int | None]:
     if count in _REPEATS:
         return _REPEATS[count]
     least, comma, most = count[1:-1].partition(",")
@@ -179,19 +179,20 @@ def _counts(count: str) -> tuple[int, int | None]:
     return int(least), int(most or least) if most or not comma else None
 
 
-def _times(piece: _Piece, least: int, most: int | None) -> _Piece:
+def _repeated(piece: _Piece, least: int, most: int | None) -> _Piece:
+    """Return a piece that is repeated so often."""
     if most is not None and most < least:
         raise PatternError(f"{{{least},{most}}} is no count")
 
     def add(states: list[_State], after: int) -> int:
         start = after
         if most is None:
-            start = _add(states, None)
+            start = _add_state(states, None)
             states[start] = None, (piece(states, start), after)
         for _ in range(0 if most is None else most - least):
-            start = _add(states, None, piece(states, start), after)
+            start = _add_state(states, None, piece(states, start), after)
         for _ in range(least):
-            start = _add(states, None, piece(states, start))
+            start = _add_state(states, None, piece(states, start))
         return start
 
     return add
@@ -202,7 +203,7 @@ def _matched_characters(piece: str) -> frozenset[str]:
         return _ALL - {"\n", "\r"}
     if piece[0] == "[":
         inner = piece[1:-1]
-        return _ALL - _class(inner[1:]) if inner[:1] == "^" else _class(inner)
+        return _ALL - _class_characters(inner[1:]) if inner[:1] == "^" else _class_characters(inner)
     return _escaped_letters(piece[1:]) if piece[0] == "\\" else frozenset(piece)
 
 
@@ -219,23 +220,23 @@ def _escaped_letters(letter: str) -> frozenset[str]:
     return frozenset(letter)
 
 
-def _class(inner: str) -> frozenset[str]:
+def _class_characters(inner: str) -> frozenset[str]:
     found: set[str] = set()
     pieces = deque(piece[0] for piece in _IN_CLASS.finditer(inner))
     while pieces:
-        first = _member(pieces.popleft())
+        first = _member_characters(pieces.popleft())
         if len(pieces) < 2 or pieces[0] != "-":
             found |= first
             continue
         pieces.popleft()
-        last = _member(pieces.popleft())
+        last = _member_characters(pieces.popleft())
         if len(first) != 1 or len(last) != 1 or min(first) > min(last):
             raise PatternError("a range of characters has no end")
         found.update(map(chr, range(ord(min(first)), ord(min(last)) + 1)))
     return frozenset(found)
 
 
-def _member(piece: str) -> frozenset[str]:
+def _member_characters(piece: str) -> frozenset[str]:
     if not piece.startswith("[:"):
         return _escaped_letters(piece[1:]) if piece[0] == "\\" else frozenset(piece)
     if piece[2:-2] not in _POSIX:

@@ -14,7 +14,7 @@ from lxml import etree
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.model import Claim, UsageError
-from multibot_rewrite.base.naming import TF_TOPICS, TOPIC_KINDS
+from multibot_rewrite.base.naming import TF_TOPICS, TOPIC_KINDS, Naming
 from multibot_rewrite.base.rosnames import RemapRule, expand, remapped_node, split_remap
 from multibot_rewrite.description.rewriters.forms import NamePart, remap
 from multibot_rewrite.description.rewriters.own_defaults import filled
@@ -41,8 +41,7 @@ class _Asked(NamedTuple):
 
 
 class _Node(NamedTuple):
-    """The node of a plugin. ``stems`` are words of parameters with topics below them; ``known`` tells
-    that it asks for no other names than these."""
+    """The node of a plugin; ``stems`` have topics below; ``known``: it asks for no other names."""
 
     name: str
     namespace: str
@@ -76,12 +75,12 @@ def names_in_rules(
         if host not in nodes:
             section = sections[host]
             bare = _Node(*named(host, section), {}, (), False)
-            names = [*_asked(host, section)]
+            names = [*_asked_names(host, section)]
             stems = tuple(it.name for it in names if it.kind == "stem")
             asked = {bare.full(it.name): it for it in names if it.kind != "stem"}
             known = bool(names or section.wired) and not section.process_wide
             nodes[host] = bare._replace(asked=asked, stems=stems, known=known)
-        parts = _names(claim, nodes[host], sections[host].process_wide)
+        parts = _names_in_rule(claim, nodes[host], sections[host].process_wide)
         found[at] = tuple(sorted(parts, key=lambda it: it.at))
     return found
 
@@ -119,6 +118,21 @@ def named(host: etree._Element, section: PluginDefinition) -> tuple[str, str]:
         return name, namespace
 
 
+def relative(
+    rule: RemapRule, host: etree._Element, section: PluginDefinition, naming: Naming
+) -> str:
+    """Return an absolute rule of a whole process without the plugin's namespace, for all robots alike;
+    nothing if it is not below that, or if names of it stay absolute."""
+    wide = section.process_wide and not (section.helper or rule.node or rule.scheme)
+    namespace = named(host, section)[1].strip("/")
+    root = f"/{namespace}/" if namespace else "/"
+    names = (rule.source, rule.target)
+    stay = ABSOLUTE.intersection(names) or rule.target.strip("/") in naming.shared_topics
+    if not wide or stay or not all(it.startswith(root) for it in names):
+        return ""
+    return ":=".join(it.removeprefix(root) for it in names)
+
+
 def _flag(argument: etree._Element) -> str:
     """Return the flag before an ``<argument>`` that is its value, as ``-p``; empty without one."""
     before = next(argument.itersiblings("argument", preceding=True), None)
@@ -126,7 +140,7 @@ def _flag(argument: etree._Element) -> str:
     return text if text.startswith("-") and text not in _ALONE else ""
 
 
-def _asked(host: etree._Element, section: PluginDefinition) -> Iterator[_Asked]:
+def _asked_names(host: etree._Element, section: PluginDefinition) -> Iterator[_Asked]:
     """Yield the names in its code without a parameter, and the parameters that hold names."""
     yield from (_Asked(name, "") for name in section.topics)
     for site in section.sites:
@@ -138,7 +152,7 @@ def _asked(host: etree._Element, section: PluginDefinition) -> Iterator[_Asked]:
                 yield _Asked(value, site.kinds[0])
 
 
-def _names(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
+def _names_in_rule(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
     if claim.site.form == "argument" and _flag(claim.element) not in ("", *_REMAPS):
         return
     yield from remap(claim.value, claim.site.kinds, {})
@@ -151,8 +165,8 @@ def _names(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
 
 
 def _names_in_left_side(source: str, at: int, node: _Node) -> Iterator[NamePart]:
-    """Yield the names in a left side that starts at character ``at``: none in a relative one for an
-    absolute name, since robots' names may be put into these at different places."""
+    """Yield the names in a rule's left side that starts at character ``at``."""
+    # None in a relative one for an absolute name: these have robots' names at different places.
     full = node.full(source)
     asked = node.asked.get(full)
     if asked is not None and asked.name.startswith("/"):
@@ -160,7 +174,7 @@ def _names_in_left_side(source: str, at: int, node: _Node) -> Iterator[NamePart]
             yield NamePart(at, source, (asked.kind,))
         return
     stem = next((it for it in node.stems if f"{full}/".startswith(f"{node.full(it)}/")), "")
-    if source.startswith("/") and not stem.startswith("/") and _moves(full, asked, stem, node):
+    if source.startswith("/") and not stem.startswith("/") and _is_moved(full, asked, stem, node):
         yield NamePart(at, source, ("namespace",))
     # What is behind the namespace is the same in a relative and an absolute left side.
     rest = full.removeprefix(node.root)
@@ -176,9 +190,8 @@ def _names_in_left_side(source: str, at: int, node: _Node) -> Iterator[NamePart]
         yield NamePart(behind, rest, (asked.kind,))
 
 
-def _moves(full: str, asked: _Asked | None, stem: str, node: _Node) -> bool:
-    """Return whether the name goes with the namespace of its node. One of an unknown node does, since
-    most names are relative."""
+def _is_moved(full: str, asked: _Asked | None, stem: str, node: _Node) -> bool:
+    """Return whether a name moves with its node's namespace, as most of an unknown node's do."""
     if not full.startswith(node.root):
         return False
     if asked is not None or stem or not node.known:

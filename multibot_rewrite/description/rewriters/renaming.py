@@ -32,8 +32,7 @@ NO_RULES: Rules = {}
 
 
 class ResolvedName(NamedTuple):
-    """A name in a value: where it starts, and what it is; ``kind`` is empty where the file would
-    have to declare it as one of ``kinds`` and does not."""
+    """A name in a value, from character ``at``; ``kind`` is empty if it lacks a declaration."""
 
     at: int
     text: str
@@ -57,14 +56,13 @@ Spelling = tuple[Renamed, ...]
 def resolved_names(
     claims: Iterable[Claim], declared: Declared, apart: bool = False, rules: Rules = NO_RULES
 ) -> list[tuple[ResolvedName, ...]]:
-    """Return the names in each claimed value, resolved; claims of equal values share theirs. ``apart``
-    as for ``resolve``; ``rules`` are the names in remap rules of plugins."""
+    """Return the names in each claimed value; ``rules`` are those in remap rules of plugins."""
     known: dict[tuple[object, str], tuple[ResolvedName, ...]] = {}
     result = []
     for at, claim in enumerate(claims):
         site = claim.site
         if at in rules:
-            result.append(_of_parts(rules[at], site.role, declared, apart))
+            result.append(_with_kinds(rules[at], site.role, declared, apart))
             continue
         # A link or joint is the same at every site, others at each site.
         of: object = site.whole_value_kind or id(site)
@@ -82,10 +80,10 @@ def _resolved_names(claim: Claim, declared: Declared, apart: bool) -> tuple[Reso
         return (ResolvedName(0, value, site.whole_value_kind, site.kinds),)
     if site.role == "declares" and site.form == "whole" and value and value == value.strip():
         return (ResolvedName(0, value, site.kinds[0], site.kinds),)
-    return _of_parts(names_in(claim, declared), site.role, declared, apart)
+    return _with_kinds(names_in(claim, declared), site.role, declared, apart)
 
 
-def _of_parts(
+def _with_kinds(
     parts: Iterable[NamePart], role: str, declared: Declared, apart: bool
 ) -> tuple[ResolvedName, ...]:
     return tuple(
@@ -95,8 +93,7 @@ def _of_parts(
 
 
 def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
-    """Return the names in a claimed value; none if it is in the scope of another model. The kind of a
-    scoped one is decided if the file has it as several."""
+    """Return the names in a value, none if another model's; a scope decides among several kinds."""
     site = claim.site
     parts = FORMS[site.form](claim.value, site.kinds, declared)
     if site.form != "scoped" or not parts:
@@ -107,8 +104,8 @@ def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
         return parts
     scope = scope_of(claim.element)
     for model in models:
-        scope = _child(scope, "model", model.text)
-    here = [kind for kind in kinds if _child(scope, kind, last.text) is not None]
+        scope = _named_child(scope, "model", model.text)
+    here = [kind for kind in kinds if _named_child(scope, kind, last.text) is not None]
     return (*models, last._replace(matched=tuple(here[:1])))
 
 
@@ -127,7 +124,7 @@ def takes_empty(site: SiteRow) -> bool:
 
 
 def spell_default(site: SiteRow, value: str, declared: Declared, naming: Naming) -> Spelling:
-    """Return the changes in a value that would be at a site if the file had it."""
+    """Return the changes in a default value, as if it were written at a site."""
     if site.form in IN_FRONT and naming.affix != PREFIX:
         return ()
     result = []
@@ -166,9 +163,10 @@ def resolve(
     closed: bool = False,
     apart: bool = False,
 ) -> str:
-    """Return which of ``kinds`` a name is; empty for a use of something that must be declared and
-    is not. A frame that names a link is renamed like the link, ignoring one leading slash; not if
-    frames are ``apart`` from links, because nodes name them at run time."""
+    """Return which of ``kinds`` a name is; empty if it is used and not declared as needed.
+
+    A frame that names a link is renamed like it, with or without a leading slash; not if frames
+    are ``apart`` from links, because nodes name them at run time."""
     if role == "declares":
         return kinds[0]
     for kind in kinds:
@@ -225,6 +223,6 @@ def scope_of(element: etree._Element) -> etree._Element | None:
     return next(element.iterancestors("model", "robot"), None)
 
 
-def _child(scope: etree._Element | None, tag: str, name: str) -> etree._Element | None:
+def _named_child(scope: etree._Element | None, tag: str, name: str) -> etree._Element | None:
     found = scope.iterchildren(tag) if scope is not None else iter(())
     return next((child for child in found if child.get("name") == name), None)

@@ -77,7 +77,7 @@ class TreeNode:
         self.asked = ""
         self.values: dict[str, TreeNode] = {}
         for site in sites:
-            self._add(site)
+            self._add_site(site)
 
     @classmethod
     def later(cls, element_name: str, make: Callable[[str], TreeNode]) -> TreeNode:
@@ -99,12 +99,12 @@ class TreeNode:
             setattr(self, slot, getattr(whole, slot))
         return getattr(whole, name)
 
-    def _add(self, site: SiteRow) -> None:
+    def _add_site(self, site: SiteRow) -> None:
         steps, attribute = split_path(site.path)
         attribute = qualified(attribute)
         node = self
         for step in steps:
-            node = node._step(step, site.role != "keep")
+            node = node._child_for_step(step, site.role != "keep")
         # A plugin's own section has the last word over what holds for every plugin.
         node.keeps.pop(attribute, None)
         claim = None if site.role == "keep" else site
@@ -116,7 +116,7 @@ class TreeNode:
         else:
             node.text = claim
 
-    def _step(self, step: str, active: bool) -> TreeNode:
+    def _child_for_step(self, step: str, active: bool) -> TreeNode:
         tag, attribute, value = split_step(step)
         tag = qualified(tag)
         child = self.children.setdefault(tag, TreeNode())
@@ -124,10 +124,10 @@ class TreeNode:
             self.active[tag] = child
         if not attribute:
             return child
-        child.asked, child.select = attribute, child._by_value
+        child.asked, child.select = attribute, child._node_by_value
         return child.values.setdefault(value, TreeNode())
 
-    def _by_value(self, element: _Element) -> TreeNode:
+    def _node_by_value(self, element: _Element) -> TreeNode:
         return self.values.get(element.get(self.asked, ""), self)
 
 
@@ -144,7 +144,7 @@ class Tree:
         self.tags: set[str] = set()
         self._chosen: dict[tuple[str, str, int], TreeNode] = {}
         places = definitions.places()
-        self._nodes = {name: TreeNode.later(name, self._make) for name in places}
+        self._nodes = {name: TreeNode.later(name, self._element_node) for name in places}
         self._below: dict[str, list[str]] = {name: [] for name in places}
         for name, parents in places.items():
             for parent in parents:
@@ -155,7 +155,7 @@ class Tree:
                     self._below[parent].append(name)
                 elif not self.definitions.has("element", parent):
                     (section, *_) = self.definitions.find("element", name)
-                    raise _wrong(section, f"at: {parent}: there is no [element {parent}]")
+                    raise _section_error(section, f"at: {parent}: there is no [element {parent}]")
 
     def check(self) -> None:
         """Read every section now; raises DefinitionsError for the first mistake."""
@@ -175,24 +175,24 @@ class Tree:
         tags = {child.tag for child in root}
         return max(found, key=lambda name: len(self.formats[name].children.keys() & tags))
 
-    def _make(self, element_name: str) -> TreeNode:
+    def _element_node(self, element_name: str) -> TreeNode:
         (section,) = self.definitions.find("element", element_name)
         node = TreeNode(section, section.sites)
         if section.select:
             if section.select not in SELECTORS:
-                raise _wrong(section, f"select: is one of {', '.join(SELECTORS)}")
-            node.select = self._selector(node, section.select)
+                raise _section_error(section, f"select: is one of {', '.join(SELECTORS)}")
+            node.select = self._node_selector(node, section.select)
         for name in self._below[element_name]:
             child = self._nodes[name]
             if node.children.setdefault(_tag(name), child) is not child:
                 place = f"{element_name}/{_tag(name)} has a section or sites already"
-                raise _wrong(self.definitions.find("element", name)[0], place)
+                raise _section_error(self.definitions.find("element", name)[0], place)
             node.active[_tag(name)] = child
-        self._know(node)
+        self._note_tags(node)
         return node
 
-    def _know(self, node: TreeNode) -> None:
-        """Note its tags before a thread can find the node and miss them."""
+    def _note_tags(self, node: TreeNode) -> None:
+        """Note a node's tags before a thread can find the node and miss them."""
         waiting = [node]
         while waiting:
             for tag, child in waiting.pop().active.items():
@@ -200,19 +200,19 @@ class Tree:
                 if not child.element_name:
                     waiting += [child, *child.values.values()]
 
-    def _selector(self, base: TreeNode, type_: str) -> Callable[[_Element], TreeNode]:
+    def _node_selector(self, base: TreeNode, type_: str) -> Callable[[_Element], TreeNode]:
         keys = SELECTORS[type_]
 
         def select(element: _Element) -> TreeNode:
             for key in keys(element):
-                found = _flavour(self.definitions.find(type_, key), element)
-                if found is not None and not _is_another(element, key, found):
-                    return self._node(base, found)
+                found = _by_ros(self.definitions.find(type_, key), element)
+                if found is not None and not _is_gz_sim_class(element, key, found):
+                    return self._node_with_section(base, found)
             return base
 
         return select
 
-    def _node(self, base: TreeNode, section: PluginDefinition) -> TreeNode:
+    def _node_with_section(self, base: TreeNode, section: PluginDefinition) -> TreeNode:
         assert base.section is not None
         key = (base.section.names[0], section.file, section.line)
         found = self._chosen.get(key)
@@ -220,14 +220,14 @@ class Tree:
             node = TreeNode(section, base.section.sites + section.sites)
             node.children = base.children | node.children
             node.active = base.active | node.active
-            self._know(node)
+            self._note_tags(node)
             found = self._chosen.setdefault(key, node)
         return found
 
 
-def _is_another(element: _Element, key: str, section: PluginDefinition) -> bool:
-    """Return whether it is a class of gz-sim, by its name, in a library with a name of Gazebo
-    Classic's, where the name is that of a node."""
+def _is_gz_sim_class(element: _Element, key: str, section: PluginDefinition) -> bool:
+    """Return whether it is a gz-sim class in a library with a name of Gazebo Classic's."""
+    # In Classic the name is that of a node.
     of_node = any(it.path == "@name" and it.role == "declares" for it in section.sites)
     return of_node and "::" in element.get("name", "") and not key.startswith("gazebo_ros")
 
@@ -237,7 +237,7 @@ def _tag(name: str) -> str:
     return qualified(name.rpartition(".")[2])
 
 
-def _wrong(section: PluginDefinition, message: str) -> DefinitionsError:
+def _section_error(section: PluginDefinition, message: str) -> DefinitionsError:
     return DefinitionsError(f"{section.file}:{section.line}: [{section.name}] {message}")
 
 
@@ -300,11 +300,11 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 }
 
 
-def _flavour(found: Sequence[PluginDefinition], element: _Element) -> PluginDefinition | None:
-    """Return the ROS 1 or ROS 2 section of plugins with one file name: the children tell them
-    apart, ROS 2 where none do. A ``ros`` child is ROS 2, because nothing in ROS 1 reads one. What
-    decides for the whole document is in the plugin definitions already (``sources/release_said.py``).
-    Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case)."""
+def _by_ros(found: Sequence[PluginDefinition], element: _Element) -> PluginDefinition | None:
+    """Return the ROS 1 or ROS 2 definition of plugins with one file name, by the children."""
+    # ROS 2 if they do not tell. Nothing in ROS 1 reads a ``ros`` child. What decides for the whole
+    # document: ``sources/release_said.py``. Source: gazebo_ros_pkgs branches noetic-devel
+    # (camelCase, robotNamespace), ros2 (snake_case).
     if element.find("ros") is not None:
         found = [section for section in found if section.ros != "1"]
     if len(found) < 2:
@@ -315,8 +315,7 @@ def _flavour(found: Sequence[PluginDefinition], element: _Element) -> PluginDefi
 
 @lru_cache(maxsize=16)
 def builtin_tree(definitions: tuple[str, ...], release: str, ros: str = "") -> Tree:
-    """Return the tree of a release, made once: built-in and installed definitions, and the files
-    ``definitions``. ``ros`` is "1" or "2" if it is known which of them loads the plugins."""
+    """Return the tree of built-in, installed and these definitions; ``ros`` is "1", "2" or open."""
     sections = load_definitions(definitions, release, ros=ros)
     try:
         tree = Tree(sections)

@@ -31,8 +31,7 @@ SECONDS = 60.0
 
 
 class Reach(NamedTuple):
-    """How far expansions may reach: ``roots`` are more folders to read in, ``seconds`` the time that
-    one may take. ``trust`` lifts all bounds. ``fences`` are those of the child."""
+    """How far expansions may reach: more folders, seconds, fences; with ``trust`` anywhere."""
 
     roots: tuple[str, ...] = ()
     trust: bool = False
@@ -44,19 +43,18 @@ BOUNDED, TRUSTED = Reach(), Reach(trust=True)
 
 
 class NotAllowedError(MultibotError):
-    """The boundary forbids it; the text says what and why."""
+    """An access outside the bounds; the text says what and why."""
 
 
 class Access:
-    """What one expansion may use. ``path`` is its file, which may be anywhere; ``find`` is asked for
-    packages before a sourced ROS is. A package that was found may be read."""
+    """What an expansion of ``path`` may use, with packages of ``find`` and of a sourced ROS."""
 
     def __init__(self, path: str, reach: Reach, find: Find | None) -> None:
         self.path, self.reach, self.find = path, reach, find
-        self.beside = {os.path.dirname(it) for it in _real(path)}
-        self.roots = [real_path(it) for it in (*_homes(path), *reach.roots)]
+        self.beside = {os.path.dirname(it) for it in _real_paths(path)}
+        self.roots = [real_path(it) for it in (*_own_folders(path), *reach.roots)]
         self.sourced = [
-            os.path.abspath(it) for it in (*_prefixes(), *_paths_in("ROS_PACKAGE_PATH"))
+            os.path.abspath(it) for it in (*_ros_prefixes(), *_paths_in("ROS_PACKAGE_PATH"))
         ]
 
     def readable(self, name: str) -> str:
@@ -84,21 +82,21 @@ class Access:
             (self.find and self.find(name)) or _installed(name) or self._package_in_workspace(name)
         )
         if not folder:
-            why = "" if _prefixes() or self.find else ": AMENT_PREFIX_PATH is not set"
+            why = "" if _ros_prefixes() or self.find else ": AMENT_PREFIX_PATH is not set"
             raise LookupError(f"package {name!r} is not found{why}")
         self.roots.append(real_path(folder))
         return folder
 
     def _package_in_workspace(self, name: str) -> str:
-        """Return a package of the same repository or workspace: no ROS has to be sourced."""
-        repository = _repository(os.path.dirname(_real(self.path)[0]))
+        """Return the folder of a package in the file's repository or workspace."""
+        repository = _repository(os.path.dirname(_real_paths(self.path)[0]))
         # A workspace has its repositories side by side in src.
         above = os.path.dirname(repository)
         workspace = above if os.path.basename(above) == "src" else ""
         home = os.path.realpath(os.path.expanduser("~"))
         both = (it for it in (repository, workspace) if it)
         roots = tuple(it for it in both if not _is_below(home, it))
-        folder = package_folder(name, _real(self.path)[0], roots)
+        folder = package_folder(name, _real_paths(self.path)[0], roots)
         return folder if os.path.isfile(os.path.join(folder, "package.xml")) else ""
 
     def variable(self, name: str) -> str | None:
@@ -119,7 +117,7 @@ class Access:
             beside = []
             for folder in found:
                 self.readable(folder or os.curdir)
-                names = [it for it in _names(folder) if it[0] != "." and fnmatchcase(it, part)]
+                names = [it for it in _listing(folder) if it[0] != "." and fnmatchcase(it, part)]
                 beside += [os.path.join(folder, it) for it in names]
                 seen += len(names)
                 if seen > MOST_FILES:
@@ -128,11 +126,8 @@ class Access:
         return sorted(it for it in found if self.readable(it) and _is_there(it))
 
     def read(self, name: str) -> bytes:
-        """Return the bytes of a file, one more than allowed if it is larger; raises NotAllowedError,
-        OSError.
-
-        Of a package that is not built its sources count: a build may install files elsewhere.
-        """
+        """Return a file's bytes, one more than allowed if larger; as ``readable`` or OSError."""
+        # Of a package that is not built its sources count: a build may install files elsewhere.
         path = self.readable(name)
         if not _is_there(path):
             path = self.readable(in_sources(path) or path)
@@ -157,7 +152,7 @@ def check_file(path: str) -> None:
 
 @outside
 def _content(path: str, trust: bool) -> bytes | None:
-    """Return the bytes of a file, one more than allowed; None for an untrusted device or pipe."""
+    """Return a file's bytes, one more than allowed if larger; None for a device or pipe."""
     flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
     with open(path, "rb", opener=lambda it, _: os.open(it, flags)) as file:
         is_regular = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
@@ -170,48 +165,47 @@ def _is_there(path: str) -> bool:
 
 
 @outside
-def _real(path: str) -> tuple[str, str]:
+def _real_paths(path: str) -> tuple[str, str]:
     """Return a file with the links of its folder resolved, and the file that it is a link to."""
     folder, name = os.path.split(os.path.abspath(path))
     return os.path.join(os.path.realpath(folder), name), os.path.realpath(path)
 
 
 @outside
-def _homes(path: str) -> tuple[str, ...]:
-    """Return the folder of a file, its package, its repository and the working directory if the file is
-    below it; those of the file a link leads to, too.
-
-    The home of a user and what is above it are none, although they may hold a robot or be a repository.
-    """
+def _own_folders(path: str) -> tuple[str, ...]:
+    """Return folder, package and repository of a file or link, and a working directory above."""
+    # Not the home of a user and what is above it, although they may hold a robot or be a
+    # repository.
     home, here = os.path.realpath(os.path.expanduser("~")), os.path.realpath(os.curdir)
     found: list[str] = []
-    for file in _real(path):
+    for file in _real_paths(path):
         folder = os.path.dirname(file)
-        marked = _marked(folder, "package.xml"), _repository(folder)
+        marked = _folder_with(folder, "package.xml"), _repository(folder)
         worked_in = here if _is_below(folder, here) else ""
         found += (it for it in (folder, *marked, worked_in) if it and not _is_below(home, it))
     return tuple(found)
 
 
-def _marked(folder: str, mark: str) -> str:
+def _folder_with(folder: str, mark: str) -> str:
     """Return the nearest folder above that holds ``mark``; empty if there is none."""
-    return next((it for it in _parents(folder) if os.path.lexists(os.path.join(it, mark))), "")
+    return next((it for it in _upwards(folder) if os.path.lexists(os.path.join(it, mark))), "")
 
 
 def _repository(folder: str) -> str:
-    """Return the repository that a folder is in. In a copy without ``.git`` it is the nearest folder
-    above the package with a file that only repositories have, or one called src. Empty if there is
-    none."""
-    if known := _marked(folder, ".git"):
+    """Return the repository that a folder is in; empty if there is none."""
+    # In a copy without ``.git`` it is the nearest folder above the package with a file that only
+    # repositories have, or one called src.
+    if known := _folder_with(folder, ".git"):
         return known
-    package = _marked(folder, "package.xml")
-    above = list(_parents(os.path.dirname(package))) if package else []
+    package = _folder_with(folder, "package.xml")
+    above = list(_upwards(os.path.dirname(package))) if package else []
     marks = (os.path.join(it, mark) for it in above for mark in _OF_REPOSITORY)
     found = next((os.path.dirname(it) for it in marks if os.path.lexists(it)), "")
     return found or next((it for it in above if os.path.basename(it) == "src"), "")
 
 
-def _parents(folder: str) -> Iterator[str]:
+def _upwards(folder: str) -> Iterator[str]:
+    """Yield a folder and those above it."""
     for _ in range(HIGHEST):
         yield folder
         folder = os.path.dirname(folder)
@@ -221,7 +215,7 @@ def _is_below(path: str, folder: str) -> bool:
     return path == folder or path.startswith(os.path.join(folder, ""))
 
 
-def _prefixes() -> list[str]:
+def _ros_prefixes() -> list[str]:
     return _paths_in("AMENT_PREFIX_PATH")
 
 
@@ -232,14 +226,15 @@ def _paths_in(name: str) -> list[str]:
 @outside
 def _installed(name: str) -> str:
     """Return the folder of an installed package, as ament_index_python finds it, or ""."""
-    for prefix in _prefixes():
+    for prefix in _ros_prefixes():
         if os.path.isfile(os.path.join(prefix, "share/ament_index/resource_index/packages", name)):
             return os.path.join(prefix, "share", name)
     return ""
 
 
 @outside
-def _names(folder: str) -> list[str]:
+def _listing(folder: str) -> list[str]:
+    """Return the names in a folder; none if it cannot be read."""
     try:
         return os.listdir(folder or os.curdir)
     except OSError:

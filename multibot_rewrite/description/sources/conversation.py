@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The talk with a child that expands a file: its questions are answered, its result is doubted."""
+"""Talks with a child that expands a file: answers its questions, checks its result."""
 
 from __future__ import annotations
 
@@ -30,8 +30,7 @@ _GARBAGE = (
 
 
 class Failure(NamedTuple):
-    """Why there is no text: xacro's reason, the file it was in, where in XML that is not well-formed,
-    or the numbers of the file and element and the attribute that were worked on; the macro call."""
+    """Why there is no text: reason, file, line and column or numbers of the place, macro call."""
 
     reason: str
     file: str
@@ -41,9 +40,10 @@ class Failure(NamedTuple):
 
 
 class Result(NamedTuple):
-    """What a child told; nothing says that it is true. ``fences`` are those that it has, ``files``
-    the names and numbers of elements of what it read, ``origins`` and ``calls`` as in ``marks``,
-    ``pieces`` and their ``words`` as ``child/pieces.py`` numbers them."""
+    """What a child reported, not trusted: its fences, names and element counts of ``files``.
+
+    ``origins`` and ``calls`` are as in ``marks``, ``pieces`` and ``words`` as in
+    ``child/pieces.py``."""
 
     notes: str
     fences: tuple[str, ...]
@@ -59,8 +59,7 @@ class Result(NamedTuple):
 
 
 class Sources:
-    """The files that were read for one expansion, by the name that was asked for. ``changed`` are texts
-    that are not as on the disk, by their real paths."""
+    """The files read for one expansion, by the name asked for; ``changed`` by their real paths."""
 
     def __init__(
         self,
@@ -72,7 +71,7 @@ class Sources:
         self.left = MOST_READ
 
     def read(self, name: str) -> bytes:
-        """Return the bytes of a file, the same each time; raises NotAllowedError and OSError."""
+        """Return a file's bytes, always the first read; raises NotAllowedError and OSError."""
         if name not in self.texts:
             path = self.access.readable(name)
             other = self.changed.get(real_path(path)) if self.changed else None
@@ -119,18 +118,18 @@ def converse(
 
 
 def _answered(it: XacroChild, sources: Sources) -> bytes:
-    """Answer questions until there is a report."""
+    """Answer a child's questions, and return its report."""
     for _ in range(MOST_QUESTIONS):
         kind, data = frames.received(it.read, frames.LONGEST)
         if kind == frames.REPORT:
             return data
         if kind != frames.QUESTION:
             break
-        it.send(_answer(data, sources))
+        it.send(_answer_to(data, sources))
     raise frames.GarbageError
 
 
-def _answer(data: bytes, sources: Sources) -> bytes:
+def _answer_to(data: bytes, sources: Sources) -> bytes:
     what, name = load_json(data)
     access = sources.access
     ways: Mapping[str, Callable[[str], bytes]] = {
@@ -140,7 +139,7 @@ def _answer(data: bytes, sources: Sources) -> bytes:
         frames.ENVIRONMENT: lambda variable: json.dumps(access.variable(variable)).encode(),
     }
     try:
-        return frames.framed(frames.VALUE, ways[what](_text(name)))
+        return frames.framed(frames.VALUE, ways[what](_to_text(name)))
     except NotAllowedError as error:
         said: list[object] = ["refused", str(error)]
     except OSError as error:
@@ -156,47 +155,47 @@ def _result(it: XacroChild, data: bytes) -> Result:
     """Return the rest of a child's answer; raises the errors that converse catches."""
     report = load_json(data)
     if "missing" in report:
-        raise InputError(f"{_text(report['missing'])}; pip install xacro, or source ROS 2")
+        raise InputError(f"{_to_text(report['missing'])}; pip install xacro, or source ROS 2")
     failed = report.get("error")
-    text = b"" if failed else _expected_answer(it, frames.TEXT)
-    origins = b"" if failed else _expected_answer(it, frames.ORIGINS)
+    text = b"" if failed else _next_frame(it, frames.TEXT)
+    origins = b"" if failed else _next_frame(it, frames.ORIGINS)
     return Result(
-        _text(report["notes"]),
-        tuple(_text(name) for name in report["fences"]),
-        tuple((_text(name), int(count)) for name, count in report["files"]),
-        tuple(_text(name) for name in report["macros"]),
-        _failure(failed) if failed else None,
-        ("", "") if failed else (_text(report["root"][0] or ""), _text(report["root"][1])),
+        _to_text(report["notes"]),
+        tuple(_to_text(name) for name in report["fences"]),
+        tuple((_to_text(name), int(count)) for name, count in report["files"]),
+        tuple(_to_text(name) for name in report["macros"]),
+        _parsed_failure(failed) if failed else None,
+        ("", "") if failed else (_to_text(report["root"][0] or ""), _to_text(report["root"][1])),
         text,
-        _numbers(origins, _TRIPLE),
-        _numbers(_expected_answer(it, frames.CALLS), _QUADRUPLE),
-        _numbers(_expected_answer(it, frames.PIECES), _EIGHT),
-        tuple(_text(word) for word in report["words"]),
+        _checked_numbers(origins, _TRIPLE),
+        _checked_numbers(_next_frame(it, frames.CALLS), _QUADRUPLE),
+        _checked_numbers(_next_frame(it, frames.PIECES), _EIGHT),
+        tuple(_to_text(word) for word in report["words"]),
     )
 
 
-def _expected_answer(it: XacroChild, kind: bytes) -> bytes:
+def _next_frame(it: XacroChild, kind: bytes) -> bytes:
     return frames.received(it.read, {kind: frames.LONGEST[kind]})[1]
 
 
-def _failure(told: Any) -> Failure:
+def _parsed_failure(told: Any) -> Failure:
     position, place = told["position"], told["place"]
     return Failure(
-        _text(told["reason"]),
-        _text(told["file"]),
+        _to_text(told["reason"]),
+        _to_text(told["file"]),
         (int(position[0]), int(position[1])) if position else None,
-        (int(place[0]), int(place[1]), _text(place[2])) if place else None,
+        (int(place[0]), int(place[1]), _to_text(place[2])) if place else None,
         int(told["call"]),
     )
 
 
-def _text(value: object) -> str:
+def _to_text(value: object) -> str:
     if not isinstance(value, str):
         raise frames.GarbageError
     return value
 
 
-def _numbers(data: bytes, together: int) -> array[int]:
+def _checked_numbers(data: bytes, together: int) -> array[int]:
     found = array(frames.NUMBER)
     found.frombytes(data)
     if len(found) % together:

@@ -45,7 +45,7 @@ def ros_shown(data: bytes, file: str, tree: Tree) -> str:
 
 
 def _is_inserted(element: _Element) -> bool:
-    """Return whether it is one of the elements that a rewrite counts in the comment before them."""
+    """Return whether a rewrite inserted the element, by the comment before it."""
     marks = (_MARK.match(it.text or "") for it in element.itersiblings(Comment, preceding=True))
     number = next((int(it[1]) for it in marks if it), 0)
     return sum(1 for _ in element.itersiblings("*", preceding=True)) < number
@@ -53,8 +53,7 @@ def _is_inserted(element: _Element) -> bool:
 
 @outside
 def ros_of_package(file: str) -> str:
-    """Return the ROS that builds the package of a file, ROS 2 for what `multibot build` wrote; empty
-    for a file of no package."""
+    """Return the ROS that builds the package of a file, or wrote it; empty without a package."""
     if release_of_build(file):
         return ROS_2
     folder = os.path.dirname(os.path.abspath(file)) if os.path.isfile(file) else ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expand xacro in a process of its own, which reaches no further than it may."""
+"""Expands xacro in a process of its own, which can only reach what it may."""
 
 import os
 import re
@@ -40,8 +40,7 @@ class Expanded(NamedTuple):
 
 
 class Expansion(NamedTuple):
-    """A text, the origin of each of its elements, the XML files that were read, by their names; all
-    files that were ``read``, as they were asked for; and the pieces of its values, if they were."""
+    """An expanded text with origins of its elements, XML ``sources``, files ``read``, pieces."""
 
     data: bytes
     origins: Origins
@@ -52,7 +51,7 @@ class Expansion(NamedTuple):
 
 @contextmanager
 def kept_expansions() -> Iterator[None]:
-    """Expand a file with the same arguments once in the block, while nobody changes it."""
+    """Keep expansions for equal arguments as long as the block runs."""
     before = _KEPT.set({})
     try:
         yield
@@ -61,7 +60,7 @@ def kept_expansions() -> Iterator[None]:
 
 
 def once_kept(key: object, expanded: Callable[[], _T]) -> _T:
-    """Return what was made for this key before in the block, or raise the same error."""
+    """Return the kept result for a key, or raise the kept error; make it at first."""
     kept = _KEPT.get()
     if kept is None:
         return expanded()
@@ -110,8 +109,7 @@ def expand_traced(
     in_pieces: bool = False,
     changed: Mapping[str, bytes] = MappingProxyType({}),
 ) -> Expansion:
-    """Return the URDF text of a file with ``data``, with the origins of the elements, and of the pieces
-    of their values if requested. Files that are ``changed`` have these texts, by real path."""
+    """Return the URDF text of ``data`` with origins; ``changed`` files have these texts instead."""
 
     def expanded() -> Expansion:
         sources = Sources(Access(path, reach, find), {path: data}, changed)
@@ -129,7 +127,7 @@ def expand_traced(
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:
-    """Return what xacro made, and print its warnings; raises InputError, placed by ``trace``."""
+    """Return the expanded text and print warnings; raises InputError with its place."""
     # What xacro warns about, without what a terminal would obey.
     for line in result.notes.splitlines():
         sys.stderr.write("".join(it if it.isprintable() else "?" for it in line) + "\n")
@@ -140,7 +138,7 @@ def _text(path: str, result: Result, trace: Trace) -> bytes:
         if len(text) < LONG:
             text = re.sub(r"(.{9,}) \1(?= |$)", r"\1", text, flags=re.DOTALL)
         reason = " ".join((text or said).split())
-        message = _message(path, result.failure, reason, trace)
+        message = _failure_message(path, result.failure, reason, trace)
         raise model.InputError(message, *_cause(reason))
     # xacro expands what is inside the root, and drops the declaration of its own prefix.
     prefix, tag = result.root
@@ -165,7 +163,7 @@ def _tell_once() -> None:
 
 
 def _cause(reason: str) -> tuple[str, str]:
-    """Return the cause in what xacro said, and the name that is not defined."""
+    """Return the cause of a failure that xacro reported, and the undefined name."""
     if _UNREADABLE.search(reason):
         return model.UNREADABLE, ""
     if reason.startswith("package '") and "is not found" in reason:
@@ -176,7 +174,7 @@ def _cause(reason: str) -> tuple[str, str]:
     return (model.NOT_DEFINED, found[1] or found[2] or "") if found else (model.XACRO_FAILED, "")
 
 
-def _message(path: str, failure: Failure, reason: str, trace: Trace) -> str:
+def _failure_message(path: str, failure: Failure, reason: str, trace: Trace) -> str:
     inner = alike(failure.file, path)
     inner = path if inner == os.path.normpath(path) else inner
     if not os.path.isabs(path):

@@ -28,7 +28,7 @@ def whole_robots(file: str) -> list[str]:
     """Return the xacros of its package that include a file and are not included themselves."""
     path = os.path.abspath(file)
     home = (package_of(path) or ("", os.path.dirname(path)))[1]
-    above = includers(((it, data_of_file(it)) for it in _xacros(home)), composed=True)
+    above = includers(((it, data_of_file(it)) for it in _xacro_files(home)), composed=True)
     found = [path]
     for it in found:  # grows
         found += sorted(above.get(it, set()) - set(found))
@@ -48,8 +48,8 @@ def robot_instead(file: str) -> str:
 
 
 def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> dict[str, set[str]]:
-    """Return for each of some files those of them that include it; their ``texts`` are read one by
-    one. A name that is ``composed``, as ``${arm}_macro.xacro``, may be that of several files."""
+    """Return for each of some files those of them that include it."""
+    # A name that is ``composed``, as ``${arm}_macro.xacro``, may be that of several files.
     paths: list[str] = []
     named: dict[str, list[tuple[str, str]]] = {}
     for path, data in texts:
@@ -64,14 +64,14 @@ def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> 
         alike = (it for it in filled if re.fullmatch(with_gaps(_FILLED.split(it), "."), own))
         for name in (own, *alike):
             for file, other in named.get(name, ()):
-                if _means(file, path, other):
+                if _may_include(file, path, other):
                     found.setdefault(path, set()).add(other)
     return found
 
 
 def parts_among(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:
-    """Return the files that are included, at any depth, by a file that nothing includes. A loop of
-    includes has no such file, and expanding it reports it."""
+    """Return the files that are included, at any depth, by a file that nothing includes."""
+    # A loop of includes has no such file, and expanding it reports it.
     found = {it for it in paths if not above.get(it)}
     tops = set(found)
     while more := {it for it, by in above.items() if not found.isdisjoint(by)} - found:
@@ -87,7 +87,7 @@ def data_of_file(path: str) -> bytes:
 
 
 @outside
-def _xacros(folder: str) -> list[str]:
+def _xacro_files(folder: str) -> list[str]:
     found: list[str] = []
     seen = 0
     for above, folders, names in os.walk(folder):
@@ -100,8 +100,8 @@ def _xacros(folder: str) -> list[str]:
     return found
 
 
-def _means(included: str, path: str, by: str) -> bool:
-    """Return whether the included file may be this one; with a xacro's parts by the base name."""
+def _may_include(included: str, path: str, by: str) -> bool:
+    """Return whether an include may mean this file; with ``${...}`` the base name counts."""
     if path == by:
         return False
     package = _FIND.match(included)

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``<include>`` in the models of an SDF -> what Gazebo makes of it: the included model, or with
-``merge="true"`` its parts, in place of the element.
+"""Replaces ``<include>`` in the models of an SDF by the included model, as Gazebo does.
 
-Sources: gazebosim/sdformat src/parser.cc (readXml, insertIncludedElement, merged parts get the frame
-``_merged__NAME__model__``), src/SDF.cc (findFile: SDF_PATH), gazebosim/gz-sim src/Util.cc
-(resourcePaths: GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH).
-
-What is inserted is in one line, so that every line keeps its number."""
+With ``merge="true"`` it is the parts of the model. Sources: gazebosim/sdformat src/parser.cc
+(readXml, insertIncludedElement, merged parts get the frame ``_merged__NAME__model__``),
+src/SDF.cc (findFile: SDF_PATH), gazebosim/gz-sim src/Util.cc (resourcePaths:
+GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH). What is inserted is in one line: every line
+keeps its number."""
 
 from __future__ import annotations
 
@@ -41,7 +40,7 @@ def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
 
     ``above``: the files that include this one. Raises InputError if a model includes itself.
     """
-    document = _readable(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
+    document = _try_read(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
     if document is None or document.root.tag != "sdf" or document.root.find("world") is not None:
         return data
     above = (*above, real_path(file))
@@ -70,8 +69,8 @@ def _included_text(include: _Element, file: str, above: tuple[str, ...]) -> byte
             f"{file}:{include.sourceline}: {uri!r} leads back to the model that includes it, and "
             "Gazebo reads until its memory is full; leave out one of the <include>"
         )
-    data = with_includes(_text(path), path, above)
-    root = _root(data, path)
+    data = with_includes(_bytes_or_empty(path), path, above)
+    root = _root_without_comments(data, path)
     model = root.find("model") if root is not None else None
     if root is None or model is None or (_version_numbers(root) < (1, 7) and _OLD.search(data)):
         return b""
@@ -89,14 +88,14 @@ def _included_text(include: _Element, file: str, above: tuple[str, ...]) -> byte
     return b"".join(_SPACES.sub(b" ", etree.tostring(it, with_tail=False)) for it in parts)
 
 
-def _readable(data: bytes, path: str) -> Document | None:
+def _try_read(data: bytes, path: str) -> Document | None:
     with suppress(InputError):
         return read_document(data, path)
     return None
 
 
-def _root(data: bytes, path: str) -> _Element | None:
-    document = _readable(data, path)
+def _root_without_comments(data: bytes, path: str) -> _Element | None:
+    document = _try_read(data, path)
     if document is None:
         return None
     etree.strip_tags(document.root, etree.Comment)
@@ -135,7 +134,7 @@ def _merged(include: _Element, model: _Element) -> Iterator[_Element]:
 
 
 def _placed(part: _Element, proxy: str) -> None:
-    """Change the references of a part to its model into references to the frame for it."""
+    """Redirect the references of a part to its model to the frame for the model."""
     if part.tag in ("link", "model") and part.find("pose") is None:
         etree.SubElement(part, "pose").text = "0 0 0 0 0 0"
     if part.tag == "frame" and part.get("attached_to", _OWN) == _OWN:
@@ -175,7 +174,7 @@ def _in_folder(path: str) -> str:
     if path.endswith(".sdf"):
         return path if is_file(path) else ""
     config = os.path.join(path, "model.config")
-    said = _root(_text(config), config) if is_file(config) else None
+    said = _root_without_comments(_bytes_or_empty(config), config) if is_file(config) else None
     files = sorted(said.iter("sdf"), key=_version_numbers) if said is not None else []
     name = (files[-1].text or "").strip() if files else ""
     found = os.path.join(path, name)
@@ -188,7 +187,7 @@ def _version_numbers(element: _Element) -> tuple[int, ...]:
 
 
 @outside
-def _text(path: str) -> bytes:
+def _bytes_or_empty(path: str) -> bytes:
     try:
         return read_bytes(path, MAX_BYTES)
     except (OSError, ValueError):

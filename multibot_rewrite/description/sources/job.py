@@ -52,8 +52,7 @@ _IN_VALUE = rb"""(?:>\s*|["'/])%s(?:\s*<|["'/]|::)"""
 
 
 class FilesRead(NamedTuple):
-    """The ``files`` that were read for a job, the ``arguments`` that their xacro knows, and those that
-    were given and that no file knows."""
+    """The files read for a job, the xacro arguments they know, and given ones that none knows."""
 
     files: tuple[str, ...] = ()
     arguments: tuple[str, ...] = ()
@@ -71,11 +70,11 @@ def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
 
 
 class Job(NamedTuple):
-    """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF of an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
-    whose facts count, ``why`` what says it, ``ros`` the ROS that
-    loads its plugins where that is known; ``aside`` are the systems that the world has to load,
-    names and texts. It holds no parsed document, so it can be pickled."""
+    """All that a rewrite depends on but the robots: bytes, options and names; it can be pickled.
+
+    ``file`` is the name in messages; ``urdf`` bytes and name of the URDF of an SRDF; ``own`` is
+    of a source made for one robot; ``why`` is the reason for the release; ``aside`` are names
+    and texts of the systems that the world has to load."""
 
     data: bytes
     file: str
@@ -156,7 +155,7 @@ def read_jobs(
 
 
 def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) -> None:
-    """Raise UsageError if an argument that makes names of one robot is given for another one."""
+    """Raise UsageError if an argument is given to a robot and names another one."""
     for robot in own:
         named = {name: text for name, text in given.items() if name_robot({name: text}, [robot])}
         values = " ".join(f"{name}:={text}" for name, text in named.items())
@@ -178,8 +177,7 @@ def reader(
     release: str,
     aside: bool = False,
 ) -> Reader:
-    """Return a function that reads the sources with xacro arguments, the same ones once; raises as
-    ``read_job``.
+    """Return a function that reads the sources with arguments, once each; raises as ``read_job``.
 
     Without a ``release`` it is the one in the sources.
     """
@@ -235,20 +233,19 @@ def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
 def job_for(
     read: Reader, given: Arguments, words: Sequence[str], common: Collection[str] = ()
 ) -> Job:
-    """Return the job of the robot with these words. Arguments that are ``common`` to robots do not name
-    it; raises as ``read_job``."""
+    """Return the job of the robot with these names; ``common`` arguments do not name a robot."""
     job = read(filled(given, *words[:1]))
     if not name_robot(given, words, common):
         return job
-    other = _marked(read, given, words, common)
+    other = _marked_job(read, given, words, common)
     own = {key: None for part in other.inventories for key in own_names(part, words)}
     _check_links(job, own, given, words)
     twin = as_twin(other.data) if has_mark(other.data) else b""
     job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(words[0], twin=twin))
-    plain = _plain(read, given, words, common)
+    plain = _unnamed_job(read, given, words, common)
     if plain is None:
         return job
-    if twin and job.urdf and _lacks_names(job) and not _lacks_names(plain):
+    if twin and job.urdf and _lacks_declarations(job) and not _lacks_declarations(plain):
         # The arguments make an SRDF of it that is not the URDF's: the one without them follows that.
         job, twin = job._replace(data=plain.data), b""
         texts = marked_texts(plain.inventories[1], other.inventories[1])
@@ -270,11 +267,10 @@ def job_for(
     return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))
 
 
-def _plain(
+def _unnamed_job(
     read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]
 ) -> Job | None:
-    """Return the sources with empty values for the arguments that name the robot. None if the names
-    without them are not known."""
+    """Return the job with empty values for arguments that name the robot; None if that fails."""
     named = [name for name, text in given.items() if name_robot({name: text}, words, common)]
     kept = {name: text for name, text in given.items() if name not in named}
     for empty in ([], *([it] for it in named), named):
@@ -284,7 +280,7 @@ def _plain(
 
 
 def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]) -> None:
-    """Raise InputError if an argument puts the robot's name before links and nodes do it, too."""
+    """Raise InputError if arguments and nodes both put the robot's name before links."""
     links = sorted(text for kind, text in own if kind == "link")
     if job.naming.layout.at_run_time and links:
         named = [f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text]
@@ -293,8 +289,10 @@ def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]
         raise InputError(f"{what}, and {again}; leave it out, or take frames-per-robot")
 
 
-def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]) -> Job:
-    """Return the sources with marks for the robot's words in every argument that takes them."""
+def _marked_job(
+    read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]
+) -> Job:
+    """Return the job with marks in place of the robot's name in all arguments."""
     with suppress(InputError):
         return read(marked(given, words, common))
     # Some file takes only words that it knows for one of them.
@@ -306,7 +304,7 @@ def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collec
     return read(args)
 
 
-def _lacks_names(job: Job) -> bool:
+def _lacks_declarations(job: Job) -> bool:
     said = job.inventories[0]
     found = (name for names in said.names for name in names if not name.kind)
     return any(not PARTS.isdisjoint(name.kinds) for name in found)

@@ -35,7 +35,7 @@ def known_arguments(texts: Iterable[bytes]) -> KnownArguments:
     """Return the arguments that files know."""
     bare = [_without_comments(it) for it in texts]
     names = [name for text in bare for name in _DECLARED.findall(text)]
-    names += [name for text in bare for name in _read(text)]
+    names += [name for text in bare for name in _argument_names_read(text)]
     found = dict.fromkeys(it.decode("utf-8", "replace") for it in names)
     return KnownArguments(tuple(found), any(_COMPUTED.search(it) for it in bare))
 
@@ -56,7 +56,7 @@ def defaults_in(text: bytes) -> dict[str, str]:
     return {it.get("name", ""): it.get("default", "") for it in own if "default" in it.attrib}
 
 
-def _read(text: bytes) -> Iterator[bytes]:
+def _argument_names_read(text: bytes) -> Iterator[bytes]:
     for found in _READ.finditer(text):
         yield found[1] or found[2]
     for found in _EVALUATED.finditer(text):

@@ -29,7 +29,7 @@ NO_TEXTS: NameTexts = {}
 
 
 class OwnSource(NamedTuple):
-    """What is known of a description that is one robot's own, by the arguments of its xacro.
+    """What is known of a description whose xacro arguments name one robot.
 
     ``robot`` is its name; ``plain`` are the names that the arguments make, by what they are without
     these; ``twin`` are the bytes for a robot that is called ``TWIN``.
@@ -59,7 +59,7 @@ def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
 def marked(
     arguments: Arguments, words: Sequence[str], common: Collection[str] = ()
 ) -> dict[str, str]:
-    """Return the arguments with a mark for each word of a robot; the first word fills ``{robot}``.
+    """Return the arguments with a mark for each name of a robot; the first fills ``{robot}``.
 
     Those that are ``common`` to robots name none of them.
     """
@@ -86,13 +86,13 @@ def templates(arguments: Arguments, robot: str) -> dict[str, str]:
 
 
 def name_robot(arguments: Arguments, words: Sequence[str], common: Collection[str] = ()) -> bool:
-    """Return whether any of the arguments holds a word of the robot."""
+    """Return whether an argument contains a name of the robot."""
     return marked(arguments, words, common) != dict(arguments)
 
 
 def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[str]:
-    """Return the arguments that several robots have alike, in which a word of one is part of a name, as
-    in ``left_finger``: the fingers of all robots have that name."""
+    """Return arguments equal for several robots, in which a robot's name is a part's name."""
+    # In ``left_finger`` left is a side: the fingers of all robots have that name.
     first = robots[0][0] if len(robots) > 1 else {}
     alike = {name for name in first if all(it.get(name) == first[name] for it, _ in robots)}
     words = {word for _, own in robots for word in own}
@@ -102,7 +102,7 @@ def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[st
 
 
 def own_names(inventory: "Inventory", words: Sequence[str]) -> OwnNames:
-    """Return the names with a mark in them, as they are for the robot with these words.
+    """Return the names with a mark in them, as they are for the robot with these names.
 
     Raises UsageError for a name that has the robot's name twice in a row.
     """
@@ -135,10 +135,10 @@ def _unmarked_text(text: str, words: Sequence[str]) -> str:
 
 
 def marked_texts(plain: "Inventory", marked: "Inventory") -> NameTexts:
-    """Return names as they are without the arguments -> the same with marks. Names are matched by
-    their order among those of their kind: a kind with another number of names is left out."""
+    """Return names without the arguments, mapped to the same with marks."""
+    # Matched by their order: a kind with another number of names is left out.
     found: dict[tuple[str, str], str] = {}
-    before, after = _by_kind(plain), _by_kind(marked)
+    before, after = _names_by_kind(plain), _names_by_kind(marked)
     for kind, names in after.items():
         same = len(before.get(kind, ())) == len(names)
         pairs = zip(before[kind], names, strict=True) if same else ()
@@ -146,7 +146,7 @@ def marked_texts(plain: "Inventory", marked: "Inventory") -> NameTexts:
     return found
 
 
-def _by_kind(inventory: "Inventory") -> dict[str, list[str]]:
+def _names_by_kind(inventory: "Inventory") -> dict[str, list[str]]:
     every = (it for names in inventory.names for it in names if it.kind not in DECLARED_KINDS)
     found = lists_by_key((it.kind, it.text) for it in every)
     # A reference that an argument misses is of another kind without its declaration.
@@ -154,7 +154,7 @@ def _by_kind(inventory: "Inventory") -> dict[str, list[str]]:
 
 
 def own_texts(texts: NameTexts, words: Sequence[str]) -> NameTexts:
-    """Return the texts for the robot with these words."""
+    """Return the texts for the robot with these names."""
     return {key: _unmarked_text(text, words) for key, text in texts.items()}
 
 
@@ -174,7 +174,7 @@ def _inserted_affix(plain: str, marked: str) -> Affix | None:
 
 
 def as_twin(data: bytes) -> bytes:
-    """Return the text for a robot whose words are all ``TWIN``."""
+    """Return the text for a robot that is called ``TWIN`` everywhere."""
     for mark in MARKS:
         data = data.replace(mark.encode(), TWIN.encode())
     return data

@@ -32,7 +32,7 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
     sources = os.environ.get("ROS_PACKAGE_PATH", "")
     installed = os.environ.get("AMENT_PREFIX_PATH", "")
     here = os.path.dirname(os.path.abspath(file))
-    return _candidates(name, here, (*roots, *_split_paths(sources)), _split_paths(installed))
+    return _candidate_folders(name, here, (*roots, *_split_paths(sources)), _split_paths(installed))
 
 
 @outside
@@ -66,7 +66,7 @@ def is_for_ros_1(file: str) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _candidates(
+def _candidate_folders(
     name: str, here: str, roots: tuple[str, ...], prefixes: tuple[str, ...]
 ) -> tuple[str, ...]:
     own = _own_package(here)
@@ -93,8 +93,7 @@ def _own_package(folder: str) -> tuple[str, str] | None:
 
 @outside
 def sources_around(file: str) -> str:
-    """Return the folder with the packages around a file: its repository, or the ``src`` of its
-    workspace, or the folder of the package; empty for a file in no package."""
+    """Return the repository, workspace's ``src`` or package folder around a file; empty without."""
     own = package_of(file)
     above = [own[1]] if own else []
     for _ in range(HIGHEST if own else 0):
@@ -117,8 +116,7 @@ def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
 
 
 def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
-    """Yield folders breadth first, each with whether it is a package: links are not followed, and
-    the search ends at packages and at the bounds."""
+    """Yield folders breadth first, each with whether it is a package, where the search ends."""
     waiting = deque((os.path.abspath(root), 0) for root in roots)
     for _ in range(MOST_FOLDERS):
         if not waiting:
@@ -190,10 +188,9 @@ def find_in(folder: str, path: str) -> str:
 
 @outside
 def in_sources(path: str) -> str:
-    """Return the file that a build installs as ``path`` from a package's sources; empty if none is
-    certain: what its CMakeLists.txt says, else the only file of the package that ends so, as
-    ``description/urdf/arm.xacro`` for ``urdf/arm.xacro``.
-    """
+    """Return the source file that a build installs as ``path``; empty if none is certain."""
+    # By the package's CMakeLists.txt, else its only file that ends so, as
+    # ``description/urdf/arm.xacro`` for ``urdf/arm.xacro``.
     folder = os.path.dirname(os.path.abspath(path))
     while not os.path.isdir(folder):
         folder = os.path.dirname(folder)
@@ -221,7 +218,7 @@ def _installed(folder: str) -> tuple[tuple[str, str], ...]:
 
 
 def _of_install(folder: str, words: list[str]) -> Iterator[tuple[str, str]]:
-    """Yield what one ``install(DIRECTORY a b/ DESTINATION c)`` puts where: of ``b/`` what is in it."""
+    """Yield the sources and targets of one ``install(DIRECTORY a b/ DESTINATION c)``."""
     if words[:1] not in (["DIRECTORY"], ["FILES"]) or words[-1:] == ["DESTINATION"]:
         return
     at = words.index("DESTINATION") if "DESTINATION" in words else 0

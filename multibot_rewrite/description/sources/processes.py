@@ -30,7 +30,7 @@ _KEPT_VARIABLES = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
 
 
 class ServerGoneError(Exception):
-    """The server ended: it was idle, or somebody killed it."""
+    """The server ended: it was idle, or it was killed."""
 
 
 class Server:
@@ -50,14 +50,14 @@ class Server:
         weakref.finalize(self, _close_and_wait, self.control, process)
 
     def start(self, theirs: socket.socket) -> int:
-        """Start a child with that socket; its number. Raises ServerGoneError."""
-        return self._ask(START, 0, [theirs.fileno()])
+        """Start a child with that socket and return its number; raises ServerGoneError."""
+        return self._send_command(START, 0, [theirs.fileno()])
 
     def end(self, pid: int, ended: bool) -> int:
-        """End a child; the signal if it had ended by itself, or 0. Raises ServerGoneError."""
-        return self._ask(ENDED if ended else END, pid, [])
+        """End a child; return the signal that had ended it, or 0. Raises ServerGoneError."""
+        return self._send_command(ENDED if ended else END, pid, [])
 
-    def _ask(self, command: bytes, pid: int, descriptors: list[int]) -> int:
+    def _send_command(self, command: bytes, pid: int, descriptors: list[int]) -> int:
         with self.lock:
             try:
                 socket.send_fds(self.control, [COMMAND.pack(command, pid)], descriptors)
@@ -81,29 +81,29 @@ class XacroChild:
         self.signal: int | None = None
 
     def send(self, data: bytes) -> None:
-        """Send all of it; raises OSError."""
-        self.ours.settimeout(self._left())
+        """Send all of the bytes; raises OSError."""
+        self.ours.settimeout(self._seconds_left())
         self.ours.sendall(data)
 
     def read(self, count: int) -> bytes:
         """Return that many bytes; raises EOFError if the child has ended, and TimeoutError."""
         parts = bytearray()
         while len(parts) < count:
-            self.ours.settimeout(self._left())
+            self.ours.settimeout(self._seconds_left())
             more = self.ours.recv(min(count - len(parts), 2**20))
             if not more:
                 raise EOFError
             parts += more
         return bytes(parts)
 
-    def _left(self) -> float:
+    def _seconds_left(self) -> float:
         left = self.deadline - monotonic()
         if left <= 0:
             raise TimeoutError
         return left
 
     def end(self, ended: bool = False) -> int:
-        """End it; the signal if it had ended by itself, or 0."""
+        """End it; return the signal if it had ended by itself, or 0."""
         if self.signal is None:
             self.ours.close()
             self.signal = 0

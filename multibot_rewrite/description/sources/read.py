@@ -17,6 +17,8 @@ Source = str | bytes | os.PathLike[str]
 XACRO = ".xacro"
 # A list of parts, as YAML.
 JOIN = ".join"
+# Files beside a description, of which a joined part may have several.
+BESIDE = ("controllers", "moveit")
 _SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
 
 
@@ -60,8 +62,7 @@ def has_xacro(data: bytes) -> bool:
 
 
 def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """Return the bytes of a source that is no list of parts, with the files that were read; ``trust``
-    lets a xacro file do anything."""
+    """Return a source that is no list of parts, and the files read; ``trust``: no sandbox."""
     if isinstance(source, bytes):
         return SourceText(source, "<bytes>")
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which ROS 2 release a description or a launch file is for, where nobody said it: by the build that
-wrote it, by the libraries that it loads, else by the CI and the packages of its repository.
+"""Finds the ROS 2 release that a description or a launch file is for, if no one gave it.
 
-Sources: docs.github.com "Workflow syntax" (.github/workflows), docs.gitlab.com ".gitlab-ci.yml"; REP
-149 (package.xml); for the packages REP 2000 and gazebosim.org/docs, "Installing Gazebo with ROS".
-"""
+It is that of the build that wrote it, of the libraries that it loads, else of the CI and the
+packages of its repository. Sources: docs.github.com "Workflow syntax" (.github/workflows),
+docs.gitlab.com ".gitlab-ci.yml"; REP 149 (package.xml); for the packages REP 2000 and
+gazebosim.org/docs, "Installing Gazebo with ROS"."""
 
 import os
 from collections.abc import Iterable
@@ -28,14 +28,14 @@ _NEW_PACKAGE = lazy_compile(rb"depend>\s*(?:ros_gz\w*|gz_ros2_control|gz-\w+)\s*
 
 
 class SaidRelease(NamedTuple):
-    """A release, and what says so: empty where nothing does, and the newest LTS is taken."""
+    """A release and the reason for it; without a reason it is the newest LTS."""
 
     release: str
     why: str = ""
 
 
 def release_said(told: str, text: bytes, file: str, who: str = "it") -> SaidRelease:
-    """Return the release that was ``told``, else that of a description's text or repository."""
+    """Return the release that was given, else that of a description's text or repository."""
     if told:
         return SaidRelease(told)
     file = file.removesuffix(" (expanded)")
@@ -76,13 +76,13 @@ def release_of_build(file: str) -> str:
     here = os.path.dirname(os.path.abspath(file))
     for path in (os.path.join(it, MANIFEST) for it in (here, os.path.dirname(here))):
         if os.path.isfile(path):
-            found = _manifest(path)
+            found = _build_manifest(path)
             said = found.get("distro") if found.get("format") == BUILD else ""
             return said if isinstance(said, str) and said in RELEASES else ""
     return ""
 
 
-def _manifest(path: str) -> dict[str, object]:
+def _build_manifest(path: str) -> dict[str, object]:
     try:
         found = load_json(bytes_if_read(path))
     except ValueError:
@@ -92,8 +92,7 @@ def _manifest(path: str) -> dict[str, object]:
 
 @outside
 def release_in_repository(file: str) -> str:
-    """Return the one release in the CI of a file's repository, or in its package's dependencies, a
-    blank, and the reason; empty for none or several."""
+    """Return the one release in a file's CI or package, a blank, and the reason; or empty."""
     if not os.path.isfile(file):
         return ""
     here = os.path.dirname(os.path.abspath(file))

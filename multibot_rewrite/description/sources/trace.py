@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where in the xacro files each element of an expansion, and each piece of a value, was written,
-and through which macro calls.
+"""Finds where in the xacro files elements and pieces of values of an expansion were written.
 
-A child tells numbers (``child/run_xacro.py``, ``child/pieces.py``); what they stand for is looked
-up in the files as they were read here, so a number that is wrong leads nowhere else. A piece counts
-as written there only where the bytes read back as it.
-"""
+A child reports numbers (``child/run_xacro.py``, ``child/pieces.py``); what they stand for is
+looked up in the files as they were read here, so a wrong number leads nowhere else. A piece
+counts as written there only where the bytes read back as it."""
 
 import os
 from collections.abc import Sequence
@@ -96,10 +94,10 @@ def alike(path: str, given: str) -> str:
     if os.path.isabs(given) or not os.path.isabs(path):
         return path
     relative = os.path.relpath(path)
-    return relative if _steps_up(relative) <= _steps_up(os.path.normpath(given)) else path
+    return relative if _folders_up(relative) <= _folders_up(os.path.normpath(given)) else path
 
 
-def _steps_up(path: str) -> int:
+def _folders_up(path: str) -> int:
     return path.split(os.sep).count(os.pardir)
 
 
@@ -111,9 +109,10 @@ _KINDS = {"xacro:property": "property", "xacro:arg": "argument", "xacro:macro": 
 
 
 class Piece(NamedTuple):
-    """``text`` is a part of a value. It is in ``file`` from byte ``start`` to ``end``, or what
-    makes it does: an expression. ``kind`` says what wrote it: literal, property, argument, default,
-    parameter, YAML, expression, given argument (no file)."""
+    """A part of a value; it, or the expression that makes it, is in ``file`` at ``start:end``.
+
+    ``kind`` says what wrote it: literal, property, argument, default, parameter, YAML,
+    expression, given argument (no file)."""
 
     text: str
     kind: str
@@ -129,18 +128,16 @@ class Pieces:
         self.trace = trace
 
     def of(self, element: int, attribute: str, value: str) -> tuple[Piece, ...]:
-        """Return the pieces of an attribute of an element of the result, or of its text if
-        ``attribute`` is empty; () if unknown. Elements are numbered in the order of the
-        document."""
+        """Return the pieces of an attribute, or of the text if it is empty; () if unknown."""
         found, at = [], 0
-        for row in self._rows.get((element, attribute or TEXT_NODE), ()):
+        for row in self._rows_by_value.get((element, attribute or TEXT_NODE), ()):
             length = row[0]
-            found.append(self._piece(value[at : at + length], row))
+            found.append(self._piece_of_row(value[at : at + length], row))
             at += length
         return tuple(found) if at == len(value) else ()
 
     @cached_property
-    def _rows(self) -> dict[tuple[int, str], list[tuple[int, ...]]]:
+    def _rows_by_value(self) -> dict[tuple[int, str], list[tuple[int, ...]]]:
         numbers, words = self.trace.result.pieces, self.trace.result.words
         every = (numbers[at : at + EIGHT] for at in range(0, len(numbers), EIGHT))
         return lists_by_key(
@@ -149,7 +146,7 @@ class Pieces:
             if 0 <= attribute < len(words)
         )
 
-    def _piece(self, text: str, row: tuple[int, ...]) -> Piece:
+    def _piece_of_row(self, text: str, row: tuple[int, ...]) -> Piece:
         _, file, element, word, offset, whole = row
         words, names = self.trace.result.words, self.trace.names
         attribute = words[word] if 0 <= word < len(words) else ""

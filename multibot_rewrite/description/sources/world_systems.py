@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Systems of the whole world that a description loads, set aside: they stay in the text as comments,
-and the world loads them, once.
+"""Moves systems of the whole world out of a description: they stay as comments.
 
-Why: gz-sim makes one object for each <plugin> that it meets (src/SystemManager.cc), so a second robot
-with the Sensors system crashes it (gz-sensors issue 497).
-"""
+Why: gz-sim makes one object for each <plugin> that it meets (src/SystemManager.cc), so a second
+robot with the Sensors system crashes it (gz-sensors issue 497)."""
 
 from __future__ import annotations
 
@@ -51,8 +49,7 @@ def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
 
 
 def _may_load(tag: bytes, tree: Tree) -> bool:
-    """Return whether a plugin is named as a system of the world, or has an entity. Most
-    descriptions have none, and need not be read for that."""
+    """Return whether a plugin may be a system of the world: by its name, or with an entity."""
     said = {
         name.decode(): value.decode("utf-8", "replace") for name, _, value in _SAID.findall(tag)
     }
@@ -62,8 +59,8 @@ def _may_load(tag: bytes, tree: Tree) -> bool:
 
 
 def left_to_world(document: Document, left: Systems) -> Iterator[Finding]:
-    """Yield a note of the systems that the world has to load. Raises InputError if the source has
-    such a comment already: undoing the rewrite would remove it."""
+    """Yield a note of the systems the world has to load; raises InputError for a second one."""
+    # Undoing the rewrite would remove a comment that the source has already.
     if len(_ASIDE.findall(document.source)) != len(left):
         what = "a comment 'left to the world' is that of an earlier rewrite"
         raise InputError(f"{document.file}: {what}: take that back by --undo")
@@ -85,8 +82,8 @@ def put_back(source: bytes, file: str, tree: Tree) -> bytes:
 
 
 def needed_systems(models: Iterable[tuple[str, _Element]]) -> Iterator[tuple[str, str]]:
-    """Yield the systems that a Gazebo world needs for these models, each once, with the reason.
-    Source: user_commands of gz-sim8 spawns entities."""
+    """Yield the systems that a Gazebo world needs for these models, each once, with the reason."""
+    # Source: user_commands of gz-sim8 spawns entities.
     every = list(models)
     if every:
         yield "user-commands", f"{every[0][0]} is not spawned"

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Plan -> text: a template is cut once at every slot, then each robot is one ``bytes.join``; and where
-whole elements are in the bytes of a document."""
+"""Writes the text of a plan: cut once at every slot, then joined for each robot."""
 
 from bisect import bisect_left
 from collections.abc import Iterable
@@ -62,9 +61,9 @@ def list_changes(template: Template, robot: str) -> list[Change]:
     for claim, spelling in zip(inventory.claims, plan.renames.values, strict=True):
         if spelling:
             new = respelled(claim.value, spelling, robot)
-            changes.append(_change(source, claim, spelling[0].kind, new))
+            changes.append(_value_change(source, claim, spelling[0].kind, new))
     for claim, text in plan.collisions:
-        changes.append(_change(source, claim, "collision", text.replace(ROBOT_SLOT, robot)))
+        changes.append(_value_change(source, claim, "collision", text.replace(ROBOT_SLOT, robot)))
     starts = dict(zip(inventory.document.root.iter("*"), inventory.document.starts, strict=True))
     for item in plan.insertions:
         place = locate(source, starts[item.parent])
@@ -73,7 +72,7 @@ def list_changes(template: Template, robot: str) -> list[Change]:
     return sorted(changes)
 
 
-def _change(source: bytes, claim: Claim, kind: str, new: str) -> Change:
+def _value_change(source: bytes, claim: Claim, kind: str, new: str) -> Change:
     attribute = f"@{claim.attribute}" if claim.attribute else ""
     path = path_of(claim.element) + attribute
     place = locate(source, claim.start)

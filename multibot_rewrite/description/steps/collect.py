@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Document -> inventory: every value a site claims, the names in it, every symbol declared, every
-plugin met."""
+"""Makes the inventory of a document: claimed values, names in them, declarations, plugins."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -40,9 +39,9 @@ class Host(NamedTuple):
 
 
 class Inventory(NamedTuple):
-    """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
-    URDF of an SRDF included; ``format`` is the section of the root element; ``names`` are the names
-    in each of the ``claims``, in their order; ``release`` is that of the facts."""
+    """Everything a plan needs; ``names`` are in the order of ``claims``, ``format`` is the root's.
+
+    ``declared`` has the declarations by kind and name, those of an SRDF's URDF included."""
 
     document: Document
     claims: list[Claim]
@@ -65,7 +64,7 @@ class Inventory(NamedTuple):
 
     @property
     def topics_in_full(self) -> frozenset[str]:
-        """Return the topics that no ROS namespace reaches, such as those of a simulated sensor."""
+        """The topics that no ROS namespace reaches, as those of a simulated sensor."""
         pairs = zip(self.claims, self.names, strict=True)
         found = (name for claim, names in pairs if not claim.site.namespaced for name in names)
         return frozenset(name.text for name in found if name.kind == "topic")
@@ -82,7 +81,7 @@ def collect(
     ``urdf_declarations`` is what the URDF of an SRDF declares. In a ``layout`` that names frames at
     run time these are not renamed as links are, and in one that keeps the names of models no topic
     is."""
-    format_ = _format(document, tree, SRDF if urdf_declarations else "")
+    format_ = _root_format(document, tree, SRDF if urdf_declarations else "")
     claims, hosts = _walk(document, tree, format_)
     release = tree.definitions.release
     claims = _of_the_robot(below_models(claims, document.source, release))
@@ -91,7 +90,7 @@ def collect(
     if not layout.namespaced:
         served = ((it.element, it.node.section) for it in hosts if it.node.section is not None)
         claims = own_namespaces(claims, served)
-    declared = _declared(claims, urdf_declarations)
+    declared = _names_by_kind(claims, urdf_declarations)
     inventory = Inventory(document, claims, hosts, declared, format_, [], release)
     rules = names_in_rules(claims, inventory.served)
     rules = {**rules, **names_in_topics(of_gz, declared, layout.renames_models)}
@@ -138,12 +137,12 @@ def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], li
                 claims.append(Claim(site, element, start, attribute, value))
         if text is not None:
             value = text_of(element)
-            if (value or renaming.takes_empty(text)) and _applies(text, element):
+            if (value or renaming.takes_empty(text)) and _site_applies(text, element):
                 claims.append(Claim(text, element, start, "", value))
     return claims, hosts
 
 
-def _format(document: Document, tree: Tree, likely: str) -> str:
+def _root_format(document: Document, tree: Tree, likely: str) -> str:
     found = tree.format_of(document.root, likely)
     if not found:
         known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
@@ -169,7 +168,7 @@ def _of_the_robot(claims: list[Claim]) -> list[Claim]:
     return [it for it in claims if it.site.when != SENT or it.value.strip("/ ") in sent]
 
 
-def _applies(site: SiteRow, element: etree._Element) -> bool:
+def _site_applies(site: SiteRow, element: etree._Element) -> bool:
     if site.when in ("", SENT):
         return True
     sibling, _, texts = site.when.partition("=")
@@ -181,7 +180,7 @@ def _applies(site: SiteRow, element: etree._Element) -> bool:
     return given in texts.split("|")
 
 
-def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dict[str, Claim]]:
+def _names_by_kind(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dict[str, Claim]]:
     declared = {kind: dict(urdf_declarations.get(kind, {})) for kind in naming.DECLARED_KINDS}
     for claim in claims:
         site = claim.site

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Source bytes -> lxml tree and byte positions. Everything later decides on the tree and edits the
-bytes, so whatever is not edited stays as it was.
+"""Reads source bytes as an lxml tree with byte positions; edits are made in the bytes.
 
 A position is found by scanning one start tag; a value is editable only if the bytes there read
-back as the parsed value. What would make that unsafe (other encodings, DOCTYPE) is refused here.
-"""
+back as the parsed value. What would make that unsafe (other encodings, DOCTYPE) is refused here."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -46,9 +44,10 @@ _HINTS = tuple((" ".join(said), hint) for said, hint in ROWS["words of libxml2"]
 
 
 class Document(NamedTuple):
-    """One parsed file. ``elements`` are all of the tree in document order, ``starts`` the byte
-    offsets of their start tags, or their numbers where no place is asked for. ``file`` is the name
-    used in messages. ``is_mended`` where a complete parser would read the text otherwise, or not."""
+    """One parsed file with all its elements in order; ``file`` is the name in messages.
+
+    ``starts`` are the byte offsets of start tags, or numbers if no place is asked for.
+    ``is_mended``: a complete parser would read the text otherwise, or not."""
 
     source: bytes
     file: str
@@ -63,20 +62,19 @@ def read_document(source: bytes, file: str, placed: bool = True) -> Document:
 
     Without ``placed`` elements are numbered and not looked for in the bytes.
     """
-    _refuse_bytes(source, file)
+    _refuse_unreadable_bytes(source, file)
     root, is_mended = _parsed(source, file)
     elements = list(root.iter("*"))
     starts = start_offsets(source) if placed else range(len(elements))
     document = Document(source, file, root, elements, starts, is_mended)
-    _refuse_tree(document)
+    _refuse_doctype_and_encoding(document)
     if placed:
         _refuse_wide(document)
     return document
 
 
 def _parsed(source: bytes, file: str) -> tuple[etree._Element, bool]:
-    """Return the root of a text as TinyXML-2 reads it, so that its tolerated faults are none here, and
-    whether the text had to be mended for that."""
+    """Return the root of a text as TinyXML-2 reads it, and whether it had to be mended."""
     if not is_loose(source):
         with suppress(etree.XMLSyntaxError):
             return etree.fromstring(source, _PARSER), False
@@ -100,7 +98,7 @@ def _parsed(source: bytes, file: str) -> tuple[etree._Element, bool]:
         raise InputError(message, cause) from None
 
 
-def _refuse_bytes(source: bytes, file: str) -> None:
+def _refuse_unreadable_bytes(source: bytes, file: str) -> None:
     if not source or source.isspace():
         raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
     if len(source) > MAX_BYTES:
@@ -117,7 +115,7 @@ def _refuse_bytes(source: bytes, file: str) -> None:
         raise InputError(f"{file}:{line}:{column}: not well-formed XML: a NUL byte; {CORRECT}")
 
 
-def _refuse_tree(document: Document) -> None:
+def _refuse_doctype_and_encoding(document: Document) -> None:
     source, file, root, *_ = document
     info = root.getroottree().docinfo
     if info.internalDTD is not None:
@@ -173,8 +171,7 @@ def slot_values(root: etree._Element) -> list[str]:
 
 
 def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[int, int] | None:
-    """Return where a value of the element at ``start`` is: of an attribute, or its text if that is
-    empty. None if the bytes there do not read back as ``value``."""
+    """Return where a value is (``attribute`` empty: the text); None if it does not read back."""
     if not attribute:
         return text_slot(source, start, value)
     # The common spelling, inside this tag and not inside another value; else the exact way.
@@ -217,8 +214,7 @@ def place_in(source: bytes, slot: tuple[int, int], value: str, at: int) -> int |
 
 
 def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
-    """Return where the value of an attribute is, with any quotes, spaces and escapes. A ``name`` of
-    a namespace (``{uri}local``) matches with any prefix."""
+    """Return where an attribute's value is; ``{uri}local`` matches with any prefix."""
     uri, _, local = name.encode().rpartition(b"}")
     there = attribute_slots(source, start)
     # Without a prefix a name is in no namespace.
@@ -236,8 +232,8 @@ def attribute_slots(source: bytes, start: int) -> dict[bytes, tuple[int, int]]:
 
 
 def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
-    """Return where the text after a start tag is, without white space around it and comments before
-    it; None if it does not read back as ``value``, or if a comment cuts it: readers differ then."""
+    """Return where the text after a start tag is, without comments and white space before it."""
+    # None if it does not read back, or if a comment cuts it: readers differ then.
     raw = value.encode()
     begin = source.find(b">", start) + 1
     end = begin + len(raw)
@@ -257,9 +253,9 @@ def _behind_comments(source: bytes, at: int) -> int:
 
 
 def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes]:
-    """Return where text goes in an element without text, and what to write around it. A filled
-    ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied again.
-    Before white space, a comment or anything else, the text is written without more."""
+    """Return where text goes in an element without text, and what to write around it."""
+    # A filled ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied
+    # again. Before white space, a comment or anything else, the text is written without more.
     end = tag_end(source, start)
     if source[end - 2 : end] == b"/>":
         name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>")

@@ -83,12 +83,12 @@ def _parent_edits(source: bytes, start: int, items: list[Insertion], release: st
 def _why(items: list[Insertion], release: str) -> str:
     """Return what would be wrong without the inserted elements, as a text for a comment."""
     texts = lists_by_key((without(item, release), item) for item in items)
-    parts = [f"{text} {_names(found)}" for text, found in texts.items()]
+    parts = [f"{text} {_replaced_names(found)}" for text, found in texts.items()]
     # A comment may not hold "--", a YAML string may not hold a colon and a space.
     return ", and ".join(parts).replace("--", "- -").replace(": ", ":")
 
 
-def _names(items: list[Insertion]) -> str:
+def _replaced_names(items: list[Insertion]) -> str:
     names = ("the root namespace" if item.kind == "namespace" else item.old for item in items)
     return ", ".join(dict.fromkeys(name.replace(SHOWN, "MODEL/") for name in names))
 
@@ -149,13 +149,13 @@ def removals(document: Document, robot: str) -> list[Edit]:
     edits: list[Edit] = []
     for marker in mine:
         try:
-            edits += _removal(document, marker, starts)
+            edits += _removal_edits(document, marker, starts)
         except ValueError:  # an end tag is not where this module writes it
             raise _edited_by_hand(document, marker) from None
     return edits
 
 
-def _removal(
+def _removal_edits(
     document: Document, marker: Marker, starts: dict[etree._Element, int]
 ) -> Iterator[Edit]:
     source = document.source

@@ -58,7 +58,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
 def _unstable(
     inventory: Inventory, renames: RenameMap, collisions: list[tuple[Claim, str]]
 ) -> list[Finding]:
-    """Return findings for contacts whose number would change with the order of the robot's name."""
+    """Return findings for contacts whose number depends on the robot's name."""
     document, claims, _, declared, *_ = inventory
     # ROBOT_SLOT sorts before every letter, this after.
     respell = respeller(renames, LAST)
@@ -78,6 +78,7 @@ def _unstable(
 
 
 def _edits(inventory: Inventory, renames: RenameMap) -> tuple[list[Edit], list[Finding]]:
+    """Return the edits that rename claimed values, and findings for those that cannot be."""
     source = inventory.document.source
     edits: list[Edit] = []
     findings: list[Finding] = []

@@ -33,8 +33,7 @@ def own_places(inventory: Inventory, naming: Naming) -> frozenset[Place]:
 def strip_edits(
     inventory: Inventory, naming: Naming, robot: str, own: frozenset[Place] = NOWHERE
 ) -> list[Edit]:
-    """Return edits that undo ``make_plan`` for ``robot``, in source order. ``own`` are the
-    ``own_places`` of the original: names there were not made by a rewrite, even if they look so."""
+    """Return edits that undo ``make_plan`` for ``robot``, in source order, but those at ``own``."""
     document = inventory.document
     edits = removals(document, robot)
     is_inserted = inside_of(edits)
@@ -88,7 +87,7 @@ def _without(
 
 
 def inside_of(removed: Iterable[Edit]) -> Callable[[Claim], bool]:
-    """Return a function: whether a claim is in one of the removed elements."""
+    """Return a function that says whether a claim is in one of the removed elements."""
     spans = sorted((edit.start, edit.end) for edit in removed)
     starts = [start for start, _ in spans]
     # How far those up to each one reach.

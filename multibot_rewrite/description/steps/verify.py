@@ -83,7 +83,7 @@ def verify(
     file = inventory.document.file
     beside = renamed_names(urdf_declarations, naming, robot)
     # Byte offsets of elements are needed only if more than affixes has to be removed.
-    asks_places = MARKER in output or bool(naming.own) or _replaces(plan)
+    asks_places = MARKER in output or bool(naming.own) or _replaces_text(plan)
     try:
         read = read_document(output, f"{file} for {robot}", asks_places)
         result = collect(read, tree, beside, naming.read_as)
@@ -93,7 +93,7 @@ def verify(
         raise ProofError(f"the output does not parse: {error}") from None
     is_inserted = strip.inside_of(inserted)
     if naming.own:
-        result = result._replace(names=_as_in(inventory, result, is_inserted, naming))
+        result = result._replace(names=_names_as_in_source(inventory, result, is_inserted, naming))
     pairs = list(zip(result.claims, result.names, strict=True))
     added = [pair for pair in pairs if is_inserted(pair[0])] if inserted else []
     found = [pair for pair in pairs if not is_inserted(pair[0])] if inserted else pairs
@@ -105,11 +105,11 @@ def verify(
         check(it)
 
 
-def _as_in(
+def _names_as_in_source(
     inventory: Inventory, result: Inventory, is_inserted: Callable[[Claim], bool], naming: Naming
 ) -> list[Names]:
-    """Return the names of the output. One that got the robot's name is read as below the name that a
-    xacro argument gives the robot, if both are the same word: it is a name of its site."""
+    """Return the names of the output, resolved as in the source."""
+    # If argument and rewrite gave it the same word, it is one name of its site.
     before = iter(inventory.names)
     found: list[Names] = []
     for claim, names in zip(result.claims, result.names, strict=True):
@@ -121,12 +121,12 @@ def _as_in(
     return found
 
 
-def _replaces(plan: Plan) -> bool:
+def _replaces_text(plan: Plan) -> bool:
     return any(edit.start < edit.end for edit in plan.edits)
 
 
 def same_names(it: Evidence) -> None:
-    """Raise ProofError unless the same sites are there in order, with the values by the naming."""
+    """Raise ProofError unless each site has the value that the naming gives it."""
     claims, file = it.inventory.claims, it.inventory.document.file
     if len(it.found) != len(claims):
         raise ProofError(f"{file}: {len(claims)} names went in, {len(it.found)} came out")
@@ -182,7 +182,7 @@ def same_targets(it: Evidence) -> None:
         seen.add(pair)
         kept = {at for at, name in enumerate(names) if (name.kind, name.text) in own} if own else ()
         kinds = _kinds(now, kept)
-        lost = any(_left_behind(name, it.inventory) for name in now) if "" in kinds else False
+        lost = any(_lost_its_target(name, it.inventory) for name in now) if "" in kinds else False
         if lost or kinds != _kinds(names, kept):
             raise ProofError(f"{file}: {new.value!r} does not name what it named before")
 
@@ -197,7 +197,7 @@ def _kinds(names: Names, kept: Collection[int]) -> list[str]:
     ]
 
 
-def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
+def _lost_its_target(name: ResolvedName, inventory: Inventory) -> bool:
     """Return whether this name refers to nothing now, although it did before."""
     return not name.kind and any(name.text in inventory.declared.get(it, ()) for it in name.kinds)
 
@@ -236,12 +236,12 @@ def added_once(it: Evidence) -> None:
     for marker in it.markers:
         behind = list(marker.comment.itersiblings("*"))
         added = behind[: marker.elements]
-        _check_once(it, added, [*behind, *marker.comment.itersiblings("*", preceding=True)])
+        _check_single(it, added, [*behind, *marker.comment.itersiblings("*", preceding=True)])
         for element in added:
-            _check_once(it, list(element), list(element))
+            _check_single(it, list(element), list(element))
 
 
-def _check_once(it: Evidence, added: list[etree._Element], beside: list[etree._Element]) -> None:
+def _check_single(it: Evidence, added: list[etree._Element], beside: list[etree._Element]) -> None:
     there = Counter(map(_key, beside))
     for element in added:
         if there[_key(element)] > 1:
@@ -249,13 +249,13 @@ def _check_once(it: Evidence, added: list[etree._Element], beside: list[etree._E
 
 
 def _key(element: etree._Element) -> tuple[str, str | None, str]:
-    """Return the subject of an element: the name that a rule is for, otherwise tag and name."""
+    """Return what an element is about: the name of its rule, or else tag and name."""
     rule, is_rule, _ = (element.text or "").strip().partition(":=")
     return str(element.tag), element.get("name"), rule if is_rule else ""
 
 
 def as_decided(it: Evidence) -> None:
-    """Raise ProofError unless the edits write what the plan decided to insert."""
+    """Raise ProofError unless the text has the insertions that the plan decided on."""
     output, robot, every = it.result.document.source, it.robot, it.plan.insertions
     inserted = b"".join(output[edit.start : edit.end] for edit in it.inserted)
     for item in every:
@@ -300,21 +300,21 @@ def strips_to_source(it: Evidence) -> None:
     """Check that undoing the rewrite, by the output alone, gives the input back."""
     own = strip.own_places(it.inventory, it.naming)
     fills = any(marker.filled for marker in it.markers)
-    if not (_strips(it, own) if own or fills or _replaces(it.plan) else _adds_affixes(it)):
+    if not (_undoes(it, own) if own or fills or _replaces_text(it.plan) else _adds_affixes(it)):
         raise ProofError(
             f"{it.file}: stripping {it.robot} from the output does not give the input back"
         )
 
 
-def _strips(it: Evidence, own: frozenset[strip.Place]) -> bool:
+def _undoes(it: Evidence, own: frozenset[strip.Place]) -> bool:
+    """Return whether undoing the rewrite gives the source."""
     edits = strip.strip_edits(it.result, it.naming, it.robot, own)
     return b"".join(cut(it.result.document.source, edits)) == it.inventory.document.source
 
 
 def _adds_affixes(it: Evidence) -> bool:
-    """Return whether affixes in values and inserted elements are all that a text has more than its
-    source. If a plan only adds, that equals undoing it: nothing of the source is gone, and a byte
-    added elsewhere would be one too many."""
+    """Return whether a text has only affixes and inserted elements more than its source."""
+    # That equals undoing it: nothing is gone, and a byte added elsewhere would be one too many.
     more = len(it.result.document.source) - len(it.inventory.document.source)
     more -= sum(edit.end - edit.start for edit in it.inserted)
     known: dict[tuple[int, bool], str] = {}

@@ -38,8 +38,7 @@ class CheckedYaml(NamedTuple):
 
 
 def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
-    """Return the data of a file; raises InputError with its line, the key and what is allowed.
-    ``hint`` says what to write into an empty file."""
+    """Return a file's data; raises InputError with line and key; ``hint`` is for an empty file."""
     refuse_others(text, path, FLEET)
     document = read_yaml(text, path)
     if document.root is None:
@@ -106,7 +105,7 @@ def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
 def _faults(
     error: Any, lines: Mapping[Path, int], schema: Mapping[str, Any]
 ) -> Iterator[tuple[int, str]]:
-    """Yield the lines of an error, each with its words."""
+    """Yield the line and the message of each fault in an error."""
     path = tuple(error.absolute_path)
     line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
     where = "".join(f"[{it}]" if isinstance(it, int) else f".{it}" for it in path).lstrip(".")
@@ -117,7 +116,7 @@ def _faults(
     known = error.schema["properties"]
     below = schema["$defs"].get(BELOW, {}).get("properties", ()) if BELOW in known else ()
     for key in (it for it in error.instance if it not in known):
-        words = f"{where}unknown key {_short_repr(key)}; {_known(key, known, below)}"
+        words = f"{where}unknown key {_short_repr(key)}; {_hint_for_unknown(key, known, below)}"
         yield lines.get((*path, key), line), words
 
 
@@ -131,13 +130,13 @@ def _in_words(error: Any) -> str:
     if given is None:
         return "the value is missing; write one, or remove the key"
     if error.validator == "enum":
-        return f"{_short_repr(given)} is not known; {_known(given, wanted)}"
+        return f"{_short_repr(given)} is not known; {_hint_for_unknown(given, wanted)}"
     if error.validator == "minItems" and not given:
         return "the list is empty; write at least one item"
-    return f"{_short_repr(given)} is not valid; {_wanted(error)}"
+    return f"{_short_repr(given)} is not valid; {_wanted_value_text(error)}"
 
 
-def _wanted(error: Any) -> str:
+def _wanted_value_text(error: Any) -> str:
     given, wanted = error.instance, error.validator_value
     about = error.schema.get("description", "")
     if error.validator == "type" and wanted == "string" and not isinstance(given, dict | list):
@@ -164,9 +163,9 @@ def _short_repr(value: object) -> str:
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
-def _known(word: object, known: Iterable[object], below: Collection[str] = ()) -> str:
-    """Return what to write for an unknown word: the nearest known one, otherwise all of them.
-    ``below`` are words that are known one step down, in ``BELOW``."""
+def _hint_for_unknown(word: object, known: Iterable[object], below: Collection[str] = ()) -> str:
+    """Return what to write for an unknown key or value: the nearest known one, otherwise all."""
+    # ``below`` are keys that are known one step down, in ``BELOW``.
     words = [str(it) for it in known]
     other = other_words("keys").get(str(word), str(word))
     if other in words:

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Keys of a fleet file: ``domains``, ``crossing`` and ``free_fleet``, a ROS domain for each robot, and
-what crosses between them; and ``cell``, arms that one move_group plans for.
+"""Reads ``domains``, ``crossing``, ``free_fleet`` (ROS domains) and ``cell`` of a fleet file.
 
-move_group runs once, and reads the joint states of all arms on one topic: MoveIt's state monitor takes
-messages with some of the joints (moveit2 2.12.4 current_state_monitor.cpp, ``jointStateCallback``).
-"""
+One move_group plans for the arms of a cell, and reads the joint states of all arms on one topic:
+MoveIt's state monitor takes messages with some of the joints (moveit2 2.12.4
+current_state_monitor.cpp, ``jointStateCallback``)."""
 
 from collections.abc import Collection, Mapping
 from typing import NamedTuple
@@ -21,8 +20,7 @@ DOMAINS, CROSSING, FREE_FLEET, SHARED = "domains", "crossing", "free_fleet", "sh
 
 
 class FreeFleet(NamedTuple):
-    """What a plan does not say of free_fleet: where Zenoh's router is, the map's name in the building,
-    the waypoint of each robot's charger (``{robot}`` is its name)."""
+    """What free_fleet gets: Zenoh's router, the map's name, the waypoint of a robot's charger."""
 
     router: str
     map: str
@@ -30,9 +28,9 @@ class FreeFleet(NamedTuple):
 
 
 class Apart(NamedTuple):
-    """The domain of each robot by its name, and of nodes of all robots; topics of each robot that
-    go to the latter; what free_fleet gets, if it is asked for; where the file says it. All is empty for
-    one domain."""
+    """The domains of robots and of what they share, with the place; empty for a single domain.
+
+    ``crossing`` are topics of each robot that go to the shared domain."""
 
     domains: tuple[Domain, ...] = ()
     crossing: tuple[str, ...] = ()
@@ -49,8 +47,7 @@ TOGETHER = Apart()
 
 
 def apart_of(read: FleetData, robots: Collection[str]) -> Apart:
-    """Return the domains of a fleet file; ``robots`` are the names. Raises InputError with its line
-    if they do not fit together."""
+    """Return the domains of a fleet file, by robot; raises InputError with its line."""
     data = read.data
     for key in (it for it in (CROSSING, FREE_FLEET) if it in data and DOMAINS not in data):
         file, line = read.places.get((key,), (read.file, 1))
@@ -86,8 +83,7 @@ CELL, MOVE_GROUP, JOINT_STATES = "cell", "move_group", "/joint_states"
 
 
 class Cell(NamedTuple):
-    """The joined robot: its name, and its planning groups of several arms with the groups in them.
-    ``place`` is where the fleet file asks for it."""
+    """The joined robot: its name, and planning groups of several arms with the groups in them."""
 
     name: str
     groups: Mapping[str, tuple[str, ...]]

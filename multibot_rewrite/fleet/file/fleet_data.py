@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A fleet file with those it includes, or a dict -> checked data, with the place of each value;
-paths are relative to the file's folder, and there."""
+"""Reads a fleet file with its includes, or a dict, as checked data with places of values.
+
+Paths are relative to the file's folder, and must exist."""
 
 import json
 import os
@@ -19,9 +20,8 @@ from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.description.joining.from_file import BESIDE
 from multibot_rewrite.description.sources.own_names import filled
-from multibot_rewrite.description.sources.read import is_xacro, read_file
+from multibot_rewrite.description.sources.read import BESIDE, is_xacro, read_file
 from multibot_rewrite.fleet.file.checked_yaml import Path, text_checked
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
 
@@ -95,7 +95,7 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _file_and_rest(text: str) -> tuple[str, str]:
-    """Return the first word of arguments for ``ros2 launch``, as a shell splits it, and the rest."""
+    """Return the file in arguments for ``ros2 launch``, split as a shell does, and the rest."""
     rest = StringIO(text)
     words = shlex.shlex(rest, posix=True)
     words.whitespace_split, words.commenters = True, ""
@@ -106,21 +106,21 @@ def _file_and_rest(text: str) -> tuple[str, str]:
 
 
 def _joined(folder: str, path: str) -> str:
-    """Return a path below a folder, without ``..`` unless a link makes that another place."""
+    """Return a path below a folder, normalized unless a link would change its meaning."""
     found = os.path.join(folder, path)
     short = os.path.normpath(found) if os.pardir in found else found
     return short if os.path.realpath(short) == os.path.realpath(found) else found
 
 
 def _of_package(text: str) -> bool:
-    """Return whether it is a package and the name of a file in it, not a path."""
+    """Return whether it is ``PACKAGE FILE``, not a path."""
     package, rest = _file_and_rest(text)
     file = next(iter(rest.split()), "")
     return bool(file) and "=" not in package + file
 
 
 def listed(value: Any) -> Sequence[Any]:
-    """Return a list as it is, one word as a list."""
+    """Return a list as it is, a single value as a list."""
     return [value] if isinstance(value, str) else value
 
 
@@ -227,8 +227,7 @@ def schema() -> dict[str, Any]:
 def given_arguments(
     data: Mapping[str, Any], own: Mapping[str, Any], described: Sequence[str], place: str
 ) -> dict[str, str]:
-    """Return the xacro arguments of a robot, over those of the fleet; only for xacro files. Raises
-    InputError for arguments without a xacro, and for an unknown placeholder."""
+    """Return a robot's xacro arguments and the fleet's; raises InputError without a xacro."""
     files = (*described, *(own.get(it, data.get(it, "")) for it in ("srdf", "simulated")))
     if not any(is_xacro(it) for it in files):
         if own.get("arguments"):

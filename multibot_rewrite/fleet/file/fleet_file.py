@@ -30,17 +30,15 @@ IN_FILE = "the fleet file says so"
 
 
 class FleetFile(NamedTuple):
-    """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
-    ``files`` all files of the fleet except the robots' own: the fleet file, what it includes,
-    nodes, parameters, plugin definitions. ``shared_nodes`` are nodes that run once for all robots,
-    ``own_nodes`` those that each robot has though others of the kind run once. ``sros2`` asks for a
-    policy, ``params_style`` says how parameter files are written, ``relayed`` asks for each robot's
-    tf on /tf as well, ``cell`` for one move_group for all robots, ``shape`` for outputs as the
-    launch files of a vendor take them, ``zenoh`` for configurations; ``apart`` are the domains of
-    robots that are not in one; ``why`` is what says the release. ``installed`` is where the results
-    are when they are used, empty for where they are written. ``simulator_world`` is the user's
-    world for it, which the file names at ``world_place``. ``shared_places`` are the file and line
-    of the lists of shared names, by key."""
+    """A fleet file with its includes.
+
+    ``policy`` are the options of ``make_naming`` that it sets, ``files`` all files of the fleet
+    except the robots' own. ``shared_nodes`` run once for all robots, ``own_nodes`` for each
+    robot though others of the kind run once. ``relayed`` asks for each robot's tf on /tf as
+    well, ``cell`` for one move_group for all robots, ``shape`` for outputs as a vendor's launch
+    files take them. ``apart`` are the domains, ``why`` is the reason for the release.
+    ``installed`` is where the results are used, empty for where they are written.
+    ``world_place`` and ``shared_places`` (by key) are file and line of what is set there."""
 
     file: str
     policy: Policy
@@ -70,13 +68,10 @@ class FleetFile(NamedTuple):
 def read_fleet(
     source: FleetSource, distro: str, environment: Mapping[str, str], choice: Choice = ALL
 ) -> FleetFile:
-    """Read a fleet file and those it includes, or the same as a dict or a text; raises InputError with
-    file and line.
+    """Read a fleet file, dict or text with its includes; raises InputError with file and line.
 
-    The release is ``distro``, else that of the file, else that of the environment, else the one that
-    the robots' descriptions are for. ``choice`` says which robots there are, where that is decided
-    later than the file.
-    """
+    The release is ``distro``, else that of the file, of the environment, or of the robots'
+    descriptions. ``choice`` says which robots there are if that is decided later than the file."""
     read = with_cell(with_robots(read_data(source), choice))
     data = read.data
     release, why = _release(data, distro, environment)
@@ -98,7 +93,7 @@ def read_fleet(
         definitions,
         robots,
         tuple(filter(None, (*read.files, *named, *definitions))),
-        _nodes(data, "shared_nodes"),
+        _node_names(data, "shared_nodes"),
         data.get("sros2", False),
         data.get("params_style", ""),
         data.get("relayed", False),
@@ -110,7 +105,7 @@ def read_fleet(
         apart_of(read, [it.name for it in robots]),
         why,
         tuple((it, read.places[it,]) for it in LISTS if (it,) in read.places),
-        _nodes(data, "own_nodes"),
+        _node_names(data, "own_nodes"),
     )
 
 
@@ -141,7 +136,7 @@ def _check_world(read: FleetData, naming: Naming) -> None:
         raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
 
 
-def _nodes(data: Mapping[str, Any], key: str) -> tuple[str, ...]:
+def _node_names(data: Mapping[str, Any], key: str) -> tuple[str, ...]:
     return tuple(it.strip("/") for it in listed(data.get(key, [])))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which robots a fleet has, where that is said when it starts: as a text, or as a number.
+"""Chooses the robots of a fleet when it starts, by a text or by a number.
 
 A robot of the file with ``count`` is a pattern: ``{name: robot, count: 3, step: {y: 2}}`` stands
 for robot1, robot2 and robot3, each 2 m from the one before."""
@@ -22,9 +22,9 @@ _EXAMPLE = "write robot1={x: 1.0, y: 0}; robot2={x: 2.0}"
 
 
 class Choice(NamedTuple):
-    """``robots`` names the robots, with their poses, as nav2_common's ParseMultiRobotPose reads them:
-    ``robot1={x: 1.0, y: 0}; robot2={}``. ``number`` is the number of robots of the pattern. Empty and
-    0: as the file has them."""
+    """``robots`` are named with poses, or ``number`` of the pattern; empty or 0: as in the file."""
+
+    # As nav2_common's ParseMultiRobotPose reads them: ``robot1={x: 1.0, y: 0}; robot2={}``.
 
     robots: str = ""
     number: int = 0
@@ -36,8 +36,8 @@ _Row = tuple[int, dict[str, Any]]
 
 
 def with_robots(read: FleetData, choice: Choice) -> FleetData:
-    """Return the data with all robots of its patterns, or with those that are chosen. Raises
-    UsageError for an impossible choice, InputError for a wrong pattern."""
+    """Return the data with all robots of patterns, or the chosen ones."""
+    # Raises UsageError for an impossible choice, InputError for a wrong pattern.
     given = read.data["robots"]
     if choice == ALL and not any(COUNT in it or STEP in it for it in given):
         return read
@@ -57,7 +57,7 @@ def with_robots(read: FleetData, choice: Choice) -> FleetData:
 
 
 def _repeated(read: FleetData, at: int, asked: int) -> Iterator[_Row]:
-    """Yield a robot of the file, or the robots of its pattern."""
+    """Yield a robot of the file, or all robots of its pattern."""
     robot = read.data["robots"][at]
     file, line = read.places["robots", at]
     if COUNT not in robot:
@@ -80,8 +80,7 @@ def _repeated(read: FleetData, at: int, asked: int) -> Iterator[_Row]:
 
 
 def _continued(read: FleetData, count: int) -> Iterator[_Row]:
-    """Yield the first robots of a file that numbers them, and more like the last one, as far from
-    each other as the last two."""
+    """Yield the first robots of a file, and more like the last, as far apart as the last two."""
     given = read.data["robots"]
     if not 0 < count <= MOST:
         raise UsageError(f"count {count}: write a number from 1 to {MOST}")
@@ -117,7 +116,7 @@ def _without(robot: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _chosen(text: str, rows: list[_Row], given: list[dict[str, Any]]) -> Iterator[_Row]:
-    """Yield the robots that a text names: as the file has them, otherwise like its pattern or first."""
+    """Yield the robots that a text names, as in the file or like its pattern or first robot."""
     known = {robot[NAME]: (at, robot) for at, robot in rows}
     like = next((at for at, it in enumerate(given) if COUNT in it), 0)
     base = like, {key: it for key, it in _without(given[like]).items() if key not in OWN}

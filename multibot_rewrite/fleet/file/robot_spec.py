@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import NAMESPACE, Naming
-from multibot_rewrite.description.joining.from_file import part_of, parts_of
 from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import JOIN as LIST
@@ -100,7 +99,7 @@ class RobotSpec(NamedTuple):
 
     @property
     def words(self) -> tuple[str, str, str]:
-        """What stands for it in names; the first one is ``{robot}`` in its arguments."""
+        """The texts that stand for it in names; the first is ``{robot}`` in its arguments."""
         return self.name, self.namespace, self.tag
 
     def bridge_namespace_of(self, path: str) -> str:
@@ -186,7 +185,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
 
 
 def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:
-    """Yield the launch files of a robot; raises InputError for words that are no arguments."""
+    """Yield the launch files of a robot; raises InputError for wrong arguments."""
     roots = listed(data.get("launch_roots", []))
     try:
         for text in listed(own.get("launch", data.get("launch", []))):
@@ -202,6 +201,7 @@ def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iter
 
 
 def _pose(own: Mapping[str, Any], place: str) -> Pose | None:
+    """Return the start pose of a robot; None without one, raises InputError."""
     if "pose" not in own:
         return None
     values = {key: float(value) for key, value in own["pose"].items()}
@@ -212,6 +212,7 @@ def _pose(own: Mapping[str, Any], place: str) -> Pose | None:
 
 
 def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
+    """Return the colour of a robot as written; raises InputError if there is none such."""
     value = own.get("colour", "")
     colour = value if isinstance(value, str) else tuple(value)
     try:
@@ -227,9 +228,8 @@ _MADE = "robot.urdf"
 
 
 def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
-    """Return the description of a robot, by its number, and the parts that it is joined from. A
-    list in the fleet file gets a path as if it were a file below. Raises InputError for a robot
-    with both."""
+    """Return a robot's description and the parts that it is joined from; raises InputError."""
+    # A list of parts in the fleet file gets a path as if it were a file below.
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]
     if any(JOIN in it and DESCRIPTION in it for it in (own, data)):
@@ -238,7 +238,12 @@ def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
     given = own if JOIN in own or DESCRIPTION in own else data
     if JOIN not in given:
         path = given.get(DESCRIPTION, "")
-        return path, parts_of(path) if path.endswith(LIST) else ()
+        if not path.endswith(LIST):
+            return path, ()
+    from multibot_rewrite.description.joining.from_file import part_of, parts_of  # few are joined
+
+    if JOIN not in given:
+        return path, parts_of(path)
     like = next(it["name"] for it in data["robots"] if it.get(JOIN) == own.get(JOIN))
     try:
         parts = tuple(map(part_of, given[JOIN]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Outputs in the place and the form that a vendor's launch files take; ``shapes.yaml`` has them."""
+"""Outputs at the paths and in the style that a vendor's launch files take (``shapes.yaml``)."""
 
 import itertools
 import os
@@ -24,9 +24,10 @@ NOTHING: Mapping[str, Any] = {}
 
 
 class TakingCommand(NamedTuple):
-    """A vendor's command with its words for a robot; ``takes`` are launch arguments and whose file each
-    gets, ``as_it_is`` the same for files with full names. ``robots`` is ``REAL`` or ``SIMULATED``, if
-    it is not for both; ``pose`` are the arguments of a start pose."""
+    """A vendor's command for a robot; ``takes`` are launch arguments and the file of each.
+
+    ``as_it_is`` is the same for files with full names. ``robots`` is ``REAL``, ``SIMULATED`` or
+    empty for both; ``pose`` are the arguments of a start pose."""
 
     command: str
     takes: Mapping[str, str] = NOTHING
@@ -63,8 +64,7 @@ def shapes() -> Mapping[str, Shape]:
 
 
 def with_shape(file: FleetFile) -> FleetFile:
-    """Return the fleet with the style of parameter files that its shape needs. Raises UsageError
-    for a layout or a style that the vendor's launch files cannot start."""
+    """Return the fleet in the style of its shape; raises UsageError if the layout does not fit."""
     if not file.shape:
         return file
     shape, place = shapes()[file.shape], f"{file.file}: shape {file.shape}"
@@ -101,8 +101,7 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
 
 
 def name_of(robot: RewrittenRobot, what: str) -> str:
-    """Return the output of a robot without its place: its description, SRDF, bridge, or first
-    parameter file with a section of a node; empty if it has none."""
+    """Return the output of a robot without its place, by what it is; empty if it has none."""
     return next(_files_with(robot, what), "")
 
 

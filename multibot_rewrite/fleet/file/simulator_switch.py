@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The arguments of a xacro that a fleet fills: the switch between the simulated and the real robot, and
-its own arguments for a robot's names, where the fleet file has no value for them.
+"""Fills a xacro's arguments: the switch between simulated and real, and those for names.
 
-Authors call it ``sim_mode``, ``use_sim``, ``use_gazebo``, ``sim_ignition``, ``real_robot``: it chooses
-the hardware class of ``<ros2_control>``, and often the plugins of the simulator.
-
-They are filled where the names that they reach become what the layout makes of them. What they make
-is the robot's already, so the rewrite leaves it."""
+Authors call the switch ``sim_mode``, ``use_sim``, ``use_gazebo``, ``sim_ignition``,
+``real_robot``: it chooses the hardware class of ``<ros2_control>``, and often the simulator's
+plugins. Arguments for names are filled if the names become what the layout makes of them; the
+rewrite leaves these."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -99,15 +97,14 @@ def suits_real(root: _Element) -> bool:
 
 
 def _lacks_a_class(root: _Element) -> bool:
-    """Return whether another argument names the class of some hardware."""
+    """Return whether some hardware has no class, which another argument may give it."""
     return any(it.find("plugin") is None for it in root.iterfind(".//ros2_control/hardware"))
 
 
 def switch_for(
     path: str, given: Mapping[str, str], suits: Suits, reach: Reach
 ) -> tuple[str, str] | None:
-    """Return the one argument and its other value with which the description suits; None if it
-    already does, or no value does."""
+    """Return the argument and value with which a description suits; None if not needed, or none."""
     if not path.endswith(".xacro"):
         return None
     with suppress(InputError):
@@ -123,8 +120,9 @@ def switch_for(
 
 
 def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Yield arguments with a value that may switch the simulator: one that is named so and is true
-    or false, one that is compared with other words (``mode == 'gazebo'``), a hardware class."""
+    """Yield arguments with another value that may switch between simulated and real."""
+    # That is one with such a name and a value of true or false, one that is compared with other
+    # words (``mode == 'gazebo'``), or one for a hardware class.
     declared: dict[str, str] = {}
     for file, data in sources.items():
         for it in read_document(data, file).root.iter("{*}arg"):
@@ -146,7 +144,7 @@ def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterato
 
 
 def _compared(name: str, text: str) -> list[str]:
-    """Return the words that an argument is compared with, those of simulators first."""
+    """Return the values that an argument is compared with, those of simulators first."""
     found = re.findall(rf"""\b{re.escape(name)}\)?["']?\s*==\s*["']([\w-]+)["']""", text)
     return sorted(dict.fromkeys(found), key=lambda it: _SIMULATED.search(it.lower()) is None)
 
@@ -157,7 +155,7 @@ OWN_ARGUMENT = declare("MF840", "own-argument", NOTE, formats=("fleet",))
 
 
 class _Choice(NamedTuple):
-    """What a robot's argument gets; if nothing, why, where it could."""
+    """The value of an argument, or why it has none although it could."""
 
     name: str
     value: str = ""
@@ -167,9 +165,8 @@ class _Choice(NamedTuple):
 def with_own_arguments(
     file: FleetFile, naming: Naming, trust: bool
 ) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
-    """Return the fleet with a value for each argument that names robots, if that fits the layout,
-    and the findings about them, by robot. A file that cannot be expanded is left to whoever reads
-    it."""
+    """Return the fleet with values for arguments that name robots, and findings by robot."""
+    # A file that cannot be expanded is left to whoever reads it.
 
     @cache
     def found(path: str, given: frozenset[tuple[str, str]]) -> tuple[Argument, ...]:

@@ -45,8 +45,7 @@ class Code(str):
 
 
 class Function(NamedTuple):
-    """A function that starts robots: its title, its parameters, what it starts, and for each robot
-    the values of the parameters, as Python has them."""
+    """A function that starts robots; ``calls`` are the values of its parameters by robot."""
 
     title: str
     parameters: tuple[str, ...]
@@ -56,7 +55,7 @@ class Function(NamedTuple):
 
 def functions(robots: Sequence[RobotStarts]) -> list[Function]:
     """Return the functions for these robots, in the order of the first robot of each."""
-    groups = lists_by_key((_kind(it), it) for it in robots)
+    groups = lists_by_key((_common_shape(it), it) for it in robots)
     found = [one for group in groups.values() for one in _functions(group)]
     if len(found) == 1 and len(robots) > 1:
         return [found[0]._replace(title="start")]
@@ -69,26 +68,26 @@ def functions(robots: Sequence[RobotStarts]) -> list[Function]:
 
 def of_any(text: str, robot: str) -> str:
     """Return a text for people with ``<name>`` in the place of the robot's name."""
-    return "<name>".join(_parts(text, robot))
+    return "<name>".join(_split_at_name(text, robot))
 
 
-def _kind(it: RobotStarts) -> object:
-    """Return all of a robot but for the texts of its own."""
+def _common_shape(it: RobotStarts) -> object:
+    """Return what robots of one function share: all but the texts of its own."""
     left = tuple((name, of_any(why, it.name)) for name, why in it.left)
-    return left, it.clock, _shape([getattr(it, field) for field in _VALUES])
+    return left, it.clock, _without_texts([getattr(it, field) for field in _VALUES])
 
 
-def _shape(it: Any, field: str = "") -> object:
+def _without_texts(it: Any, field: str = "") -> object:
     if isinstance(it, str):
         return it if field in _OF_PROGRAMS or FLAG.fullmatch(it) else ""
     if isinstance(it, Mapping):
-        return tuple((_shape(key), _shape(one)) for key, one in it.items())
+        return tuple((_without_texts(key), _without_texts(one)) for key, one in it.items())
     if isinstance(it, tuple | list):
-        return (type(it), *(_shape(one, name) for name, one in _named(it)))
+        return (type(it), *(_without_texts(one, name) for name, one in _items_with_fields(it)))
     return type(it), it
 
 
-def _named(it: Sequence[Any]) -> Iterator[tuple[str, Any]]:
+def _items_with_fields(it: Sequence[Any]) -> Iterator[tuple[str, Any]]:
     """Yield the items, each with its field; that of an argument of a program is the flag before it."""
     if fields := getattr(it, "_fields", None):
         yield from zip(fields, it, strict=True)
@@ -108,9 +107,9 @@ def _functions(group: Sequence[RobotStarts]) -> list[Function]:
         if len(given) <= _MOST:
             values = zip(*given.values(), strict=True) if given else iter([()] * len(group))
             calls = dict(zip(merging.names, values, strict=True))
-            title = _title(group[0].description.partition(".")[0])
+            title = _function_name(group[0].description.partition(".")[0])
             return [Function(title, tuple(given), starts, calls)]
-    return [Function(_title(it.name), (), it, {it.name: ()}) for it in group]
+    return [Function(_function_name(it.name), (), it, {it.name: ()}) for it in group]
 
 
 class _Merging(NamedTuple):
@@ -140,14 +139,14 @@ class _Merging(NamedTuple):
             every = zip(*(it.items() for it in values), strict=True)
             return dict(self.pair(pairs) for pairs in every)
         if isinstance(first, tuple | list):
-            labels = (name or label for name, _ in _named(first))
+            labels = (name or label for name, _ in _items_with_fields(first))
             columns = zip(labels, zip(*values, strict=True), strict=True)
             own = [self.one(column, self.label(first, name, label)) for name, column in columns]
             return type(first)(*own) if hasattr(first, "_fields") else type(first)(own)
         return first
 
     def label(self, owner: Any, field: str, above: str) -> str:
-        """Return a variable's name for a value; a node's is not the robot's, a path's is its role."""
+        """Return a variable's name for a value: without the robot's name, a path's by its role."""
         if isinstance(owner, Start):
             return "node_name" if field == _NAME else field
         return above if field == "path" else field
@@ -162,7 +161,7 @@ class _Merging(NamedTuple):
         if len(set(values)) == 1:
             return values[0]
         for value, name in zip(values, self.names, strict=True):
-            parts = _parts(value, name)
+            parts = _split_at_name(value, name)
             if len(parts) > 1 and all(
                 one.join(parts) == other for one, other in zip(self.names, values, strict=True)
             ):
@@ -175,27 +174,27 @@ class _Merging(NamedTuple):
         """Return a parameter of the function; one of the same values may be there already."""
         numbers = all(map(_is_number, values))
         given = tuple(values if numbers else map(repr, values))
-        name = _called(label)
+        name = _parameter_name(label)
         every = (name if number == 1 else f"{name}_{number}" for number in count(1))
         own = next(it for it in every if self.parameters.get(it, given) == given)
         self.parameters[own] = given
         return Code(f"str({own})" if numbers else own)
 
 
-def _parts(text: str, robot: str) -> list[str]:
-    """Return a text cut where the robot's name is a word of it."""
+def _split_at_name(text: str, robot: str) -> list[str]:
+    """Return a text split at each occurrence of the robot's name."""
     return re.split(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])", text)
 
 
 def _is_number(text: str) -> bool:
-    """Return whether it is the text of a number that gives this text again."""
+    """Return whether it is a number that Python writes in the same way."""
     try:
         return str(float(text)) == text and text.strip("-")[0].isdigit()
     except ValueError:
         return False
 
 
-def _called(label: str) -> str:
+def _parameter_name(label: str) -> str:
     """Return a name for a parameter, by the flag, keyword or key before its value."""
     word = "model" if label == "-name" else _POSE.get(label, label)
     word = re.sub(r"\W", "_", word, flags=re.ASCII).strip("_").lower()
@@ -203,9 +202,9 @@ def _called(label: str) -> str:
 
 
 def _any_of(texts: Sequence[str], what: str) -> str:
-    """Return a text for people: the one of all, or that they have several."""
+    """Return the text of all robots for a comment, or that they have several."""
     return texts[0] if len(set(texts)) == 1 else f"its own {what}"
 
 
-def _title(word: str) -> str:
+def _function_name(word: str) -> str:
     return f"start_{re.sub(r'[^0-9a-zA-Z_]', '_', word)}"

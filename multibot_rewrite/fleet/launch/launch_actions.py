@@ -32,8 +32,7 @@ from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
-from multibot_rewrite.knowledge.conditions import UNSENT, said
-from multibot_rewrite.knowledge.controller_ways import names_its_process
+from multibot_rewrite.knowledge.conditions import UNSENT, readable
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
@@ -44,7 +43,7 @@ from multibot_rewrite.knowledge.programs import (
     program_of,
     started_as,
 )
-from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts, names_its_process
 from multibot_rewrite.planning.domain_bridge import bridge_name, bridge_path
 from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.planning.start import (
@@ -56,7 +55,7 @@ from multibot_rewrite.planning.start import (
     spawner_of,
     start_of,
 )
-from multibot_rewrite.planning.ways import COMPONENT, SPAWNER, Started
+from multibot_rewrite.planning.ways import Started
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.producers.launch.bridges import services_in
@@ -69,12 +68,10 @@ from multibot_rewrite.producers.launch.handed_on import (
 )
 from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
-from multibot_rewrite.system.words import START_POSE
+from multibot_rewrite.system.records import COMPONENT, PUBLISHES, SPAWNER, TOPIC
+from multibot_rewrite.system.words import START_POSE, last_word
 
 STATE = "robot_state_publisher"
-# Their words name files of the robot.
-_WORDS_OF_BUILD = (STATE, CARTOGRAPHER)
 # What launch files themselves set, by robot and node.
 Values: TypeAlias = Mapping[tuple[str, str], Mapping[str, Any]]
 # Started by hand, or once for all robots.
@@ -98,18 +95,33 @@ _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 
 
 def of_robot(
-    one: FleetPlan, files: Mapping[str, bool], bridged: Collection[str], values: Values
+    one: FleetPlan,
+    files: Mapping[str, bool],
+    bridged: Collection[str],
+    values: Values,
+    texts: Mapping[str, bytes],
 ) -> RobotStarts:
-    """Return what the one robot of a plan runs. ``files`` are the paths that the build writes, each
-    with whether it has launch substitutions, ``bridged`` the topics that bridges bring from a
-    simulator, ``values`` what launch files themselves set."""
+    """Return what the one robot of a plan runs.
+
+    ``files`` are the paths that the build writes, each with whether it has launch substitutions;
+    ``bridged`` the topics from a simulator; ``values`` what launch files themselves set; ``texts``
+    what the build writes."""
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
     readers = dict(_readers(one, robot))
     given = _Given(one, robot, names, facts, files, bridged, values, readers, {})
     given = given._replace(left=dict(_not_started(given)))
-    processes = (_started(given, it) for it in given.running if names.started[it].way != COMPONENT)
+    # The nodes that are started, and those in their processes.
+    started = tuple(
+        names.full_name(it)
+        for name in given.running
+        for it in (name, *(inner for inner in names.inside(name) if inner not in given.left))
+    )
+    words = (b"*", *(last_word(it).encode() for it in started))
+    params = [it for it in params_paths(robot, files) if any(word in texts[it] for word in words)]
+    given = given._replace(params=params)
+    processes = (_start_of(given, it) for it in given.running if names.started[it].way != COMPONENT)
     relayed = [it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file)]
     launched = sorted((*processes, *_processes(one, robot)), key=lambda it: it.number)
     starts = (
@@ -118,7 +130,7 @@ def of_robot(
         *(it for it in relayed if not it.needs),
         *_domain_bridge(robot, files),
         *(it for it in relayed if it.needs),
-        *(it._replace(condition=SIMULATOR) for it in _spawned(given)),
+        *(it._replace(condition=SIMULATOR) for it in _spawn_starts(given)),
     )
     spaces = {it.namespace for it in names.nodes.values() if it.namespace != "/"}
     # What launch files do not start with the arguments that they are given, each with these.
@@ -130,22 +142,19 @@ def of_robot(
         robot.spec.name,
         os.path.basename(robot.spec.description),
         f"namespace {min(spaces, key=len)}" if spaces else "the root namespace",
-        tuple(File(it, files[it]) for it in params_paths(robot, files)),
+        tuple(File(it, files[it]) for it in params),
         starts,
         (*given.left.items(), *idle),
         not_bridged(robot.spec.name) if any(it.needs for it in relayed) else "",
-        # The nodes that are started, and those in their processes.
-        tuple(
-            names.full_name(it)
-            for name in given.running
-            for it in (name, *(inner for inner in names.inside(name) if inner not in given.left))
-        ),
+        started,
     )
 
 
 class _Given(NamedTuple):
-    """What is known of a robot; ``readers`` are the nodes that get the parameter files of launch files,
-    ``left`` the nodes that are not started, each with the reason."""
+    """What is known of a robot; ``left`` are nodes that are not started, with the reason.
+
+    ``readers`` are the nodes that get the parameter files of launch files, ``params`` the parameter
+    files with a section for a node that is started."""
 
     plan: FleetPlan
     robot: RewrittenRobot
@@ -156,6 +165,7 @@ class _Given(NamedTuple):
     values: Values
     readers: Mapping[str, Collection[str]]
     left: Mapping[str, str]
+    params: Sequence[str] = ()
 
     @property
     def release(self) -> str:
@@ -178,7 +188,7 @@ def _not_started(given: _Given) -> Iterator[tuple[str, str]]:
         elif it is None:
             yield name, f"nothing is known of its program; {_DESCRIBE.format('programs')}"
         elif it.when and not _is_needed(given, it):
-            yield name, f"nothing in the fleet file starts it: {said(it.when)}; {_NAME}"
+            yield name, f"nothing in the fleet file starts it: {readable(it.when)}; {_NAME}"
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
         elif it.kind == LIFECYCLE_MANAGER and not any(_managed(given, name)):
@@ -208,7 +218,7 @@ def _is_needed(given: _Given, it: NodeFacts) -> bool:
     return others.union(given.bridged).isdisjoint(name for is_mine, name in sent if is_mine)
 
 
-def _started(given: _Given, name: str) -> Start:
+def _start_of(given: _Given, name: str) -> Start:
     """Return what runs a node, with the components in it."""
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
@@ -229,7 +239,10 @@ def _started(given: _Given, name: str) -> Start:
     lua = given.robot.spec.related_files.get("lua", ())
     if facts.kind == CARTOGRAPHER and (lua or facts.usual):
         folder, file = os.path.split(path_for(given.robot, *lua[:1] or (OPTIONS,)))
-        words = (*words, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
+        # In place of the vendor's file.
+        flags = {at + more for at, it in enumerate(words) if it in LUA_FLAGS for more in (0, 1)}
+        kept = (it for at, it in enumerate(words) if at not in flags)
+        words = (*kept, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
     return made._replace(
         arguments=tuple(words),
         components=tuple(
@@ -244,8 +257,7 @@ def _started(given: _Given, name: str) -> Start:
 
 
 def _program(given: _Given, name: str) -> Program | None:
-    """Return a node's program, or a component's class, by its facts or its launch file; None if it is
-    unknown."""
+    """Return the program of a node, or the class of a component; None if it is unknown."""
     program = started_as(given.facts[name], given.release)
     if given.names.started[name].way != COMPONENT:
         return program if program and program.executable else None
@@ -260,10 +272,10 @@ def _start_of_node(given: _Given, name: str) -> Start:
     program = _program(given, name)
     assert program is not None
     made = start_of(given.names.started[name], program, _parameters(given, name))
-    return _with_own(given.plan, given.robot, made, name)
+    return _with_launch_settings(given.plan, given.robot, made, name)
 
 
-def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> Start:
+def _with_launch_settings(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> Start:
     """Return a process with what its launch file gives it; a description in that is the robot's."""
     found = plan.evidence_of(robot).handed_on.get(name)
     if found is None:
@@ -280,7 +292,7 @@ def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> S
         package=package,
         executable="" if it.plugin else program,
         plugin=program if it.plugin else "",
-        arguments=it.arguments if own.kind in _WORDS_OF_BUILD else own.arguments,
+        arguments=it.arguments if own.kind == STATE else own.arguments,
         environment=own.environment,
         process=own.process,
         number=own.number,
@@ -288,8 +300,7 @@ def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> S
 
 
 def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
-    """Yield the processes of its launch files that are no nodes, with the robot's parameter files
-    in the arguments of a launch file."""
+    """Yield the processes of launch files that are no nodes, with the robot's parameter files."""
     own = {os.path.realpath(it): it for it in robot.spec.related_files.get("params", ())}
     for it in (one for one in plan.evidence_of(robot).processes if not one.once):
         made = _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
@@ -300,8 +311,8 @@ def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
         yield made._replace(arguments=tuple(words))
 
 
-def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
-    """Return a command and its words; names of nodes and topics for ``ros2`` are its robot's."""
+def _own_command(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
+    """Return a command; nodes and topics in ``ros2`` commands are the robot's."""
     words, verb = (it.executable, *it.arguments), ""
     found: list[str] = []
     for at, word in enumerate(words):
@@ -311,26 +322,26 @@ def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
                 before = parts[number - 2] if number > 1 else ""
                 verb = part if os.path.basename(before) == "ros2" else verb
                 verb = "" if part in _NEXT or before.endswith(";") else verb
-                parts[number] = _named_for(part, verb, space, naming)
-            found.append("".join(_asking_its_manager(parts, " ", space, naming)))
+                parts[number] = _renamed_word(part, verb, space, naming)
+            found.append("".join(_with_own_manager(parts, " ", space, naming)))
             continue
         verb = word if at == 1 and os.path.basename(words[0]) == "ros2" else verb
         # ros2 takes a name without a slash for one in the root.
         is_name = at == _FIRST and verb not in ("", _CONTROL) and word[:1] not in ("-", "/")
         own = f"/{word}" if is_name else word
-        named = _named_for(own, verb, space, naming)
+        named = _renamed_word(own, verb, space, naming)
         found.append(word if named == own else named)
-    return tuple(_asking_its_manager(found, "", space, naming))
+    return tuple(_with_own_manager(found, "", space, naming))
 
 
-def _asking_its_manager(
+def _with_own_manager(
     words: Sequence[str], between: str, space: str, naming: Naming
 ) -> Iterator[str]:
-    """Yield the words of a command; ``ros2 control`` asks for a manager in the root where none is named
-    (ros2controlcli, add_controller_mgr_parsers)."""
+    """Yield the words of a command, with the robot's manager for ``ros2 control``."""
+    # Without a name it asks for one in the root (ros2controlcli, add_controller_mgr_parsers).
     own = [it for it in words if not it.isspace()]
     is_open = not {*own} & {"-c", "--controller-manager"}
-    spaced = [between, "-c", between, _named_for(MANAGER_IN_ROOT, _CONTROL, space, naming)]
+    spaced = [between, "-c", between, _renamed_word(MANAGER_IN_ROOT, _CONTROL, space, naming)]
     before = ["", "", ""]
     for word in words:
         before = before if word.isspace() else [*before[1:], word]
@@ -341,7 +352,7 @@ def _asking_its_manager(
         is_open = is_open and not asks
 
 
-def _named_for(word: str, verb: str, space: str, naming: Naming) -> str:
+def _renamed_word(word: str, verb: str, space: str, naming: Naming) -> str:
     if not word.startswith("/") or check_topic_name(word):
         return word
     if verb in _OF_NODES:
@@ -366,7 +377,7 @@ def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) ->
         rules = tuple((old, new) for old, new in topics if new)
     is_node, words, program = bool(made.package), made.arguments, made.executable
     if naming and not is_node:
-        program, *own_words = _of_one(made, space, naming)
+        program, *own_words = _own_command(made, space, naming)
         words = tuple(own_words)
     if made.process.is_include:
         words = tuple(part for word in words for part in word.split(":=", 1))
@@ -390,7 +401,7 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     is_launched = name in given.plan.evidence_of(robot).handed_on
     files = [
         File(it, given.files[it])
-        for it in params_paths(robot, given.files)
+        for it in (params_paths(robot, given.files) if is_launched else given.params)
         # Of those that launch files name a launched node has its own.
         if not is_launched or name in given.readers.get(it, (name,))
     ]
@@ -402,14 +413,14 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     values = given.values.get((robot.spec.name, name))
     if values and known != STATIC:
         found.append(values)
-    if known == MANAGER and (types := dict(_types(given, name))):
+    if known == MANAGER and (types := dict(_controller_types(given, name))):
         found.append(types)
     if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
         found.append(File(path_for(robot, "start_pose.yaml")))
     if known == STATE:
-        found.append(_described(given, name))
+        found.append(_publisher_parameters(given, name))
     if known in _OF_MOVEIT:
-        found.append({"robot_description": Text(_description(robot))})
+        found.append({"robot_description": Text(_description_path(robot))})
         if made.path in given.files:
             found.append(made)
         elif robot.spec.srdf:
@@ -425,14 +436,14 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     return tuple(found)
 
 
-def _described(given: _Given, name: str) -> Parameters:
-    """Return what a robot_state_publisher publishes: the robot, or the other description of its
-    launch file, whose frames get the robot's name in front."""
+def _publisher_parameters(given: _Given, name: str) -> Parameters:
+    """Return the parameters of a robot_state_publisher: description and the prefix of frames."""
+    # Another description of its launch file gets the robot's name in front of its frames.
     robot, naming = given.robot, given.plan.fleet.naming
     handed = given.plan.evidence_of(robot).handed_on.get(name)
     if handed is None or not handed.description:
         prefix = {"frame_prefix": robot.frame_prefix} if robot.frame_prefix else {}
-        return {DESCRIPTION: Text(_description(robot)), **prefix}
+        return {DESCRIPTION: Text(_description_path(robot)), **prefix}
     above = f"{robot.spec.tag}/" if naming.layout.frames else ""
     own = str(handed.values.get("frame_prefix", ""))
     prefix = {"frame_prefix": f"{above}{own}"} if above else {}
@@ -440,8 +451,8 @@ def _described(given: _Given, name: str) -> Parameters:
 
 
 def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:
-    """Yield the parameter files that launch files name, each with its nodes; without nodes if it is
-    for a spawner or for a launch file that is missing."""
+    """Yield the parameter files of launch files, each with its nodes."""
+    # Without nodes if it is for a spawner, or for a launch file that is missing.
     evidence = plan.evidence_of(robot)
     words = (
         word
@@ -459,9 +470,9 @@ def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, froz
             yield path_for(robot, it), nodes
 
 
-def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
-    """Yield the types of the controllers that no file of the robot declares: without one a
-    controller is not loaded (ros2_control controller_manager.cpp)."""
+def _controller_types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
+    """Yield the types of controllers that no file of the robot declares."""
+    # Without one a controller is not loaded (ros2_control controller_manager.cpp).
     file = given.plan.file
     types = {it: type_ for type_, it in load_known_nodes(file.nodes, file.distro).types.items()}
     declared = {it.node for it in given.plan.evidence_of(given.robot).given if it.program}
@@ -473,10 +484,10 @@ def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
 
 def _managed(given: _Given, manager: str) -> Iterator[str]:
     """Yield what a lifecycle manager's nodes are called; empty for one that the robot has not."""
-    return (_called(given, it) for it in given.names.managed.get(manager, ()))
+    return (_own_node_name(given, it) for it in given.names.managed.get(manager, ()))
 
 
-def _called(given: _Given, node: str) -> str:
+def _own_node_name(given: _Given, node: str) -> str:
     """Return the name of a node of a node set: the robot's parameter file may have an older one."""
     if node in given.names.nodes:
         return given.names.name(node)
@@ -484,7 +495,7 @@ def _called(given: _Given, node: str) -> str:
     return next((given.names.name(it) for it in alike if it in given.names.nodes), "")
 
 
-def _description(robot: RewrittenRobot) -> str:
+def _description_path(robot: RewrittenRobot) -> str:
     return path_for(robot, expanded_name(robot.spec.description))
 
 
@@ -511,7 +522,7 @@ def controller(plan: FleetPlan, it: Started) -> Start:
     return made._replace(process=how, number=spawned.number, arguments=words_)
 
 
-def _spawned(given: _Given) -> Iterator[Start]:
+def _spawn_starts(given: _Given) -> Iterator[Start]:
     """Yield what puts the robot into its simulator, and what brings its topics from there."""
     robot = given.robot
     if not is_simulated(robot):
@@ -527,16 +538,15 @@ def _spawned(given: _Given) -> Iterator[Start]:
         spaces = {it.namespace for it in given.names.nodes.values()}
         namespace = min(spaces, key=len, default="/")
         name = "" if namespace != "/" else f"ros_gz_bridge_{robot.spec.namespace}"
-        qos = dict(_qos(given.plan, robot, robot.spec.namespace))
+        qos = dict(_qos_rows(given.plan, robot, robot.spec.namespace))
         yield Start(*_BRIDGE, namespace, name, ({"config_file": File(path), **qos},))
 
 
-def _qos(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tuple[str, object]]:
-    """Yield what the bridges of its launch files set for topics of the robot, or without a ``space``
-    for those of all robots."""
+def _qos_rows(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tuple[str, object]]:
+    """Yield settings of launched bridges for the robot's topics; without ``space`` for shared."""
     for key, value in plan.evidence_of(robot).qos.items():
         topic = key.split(".")[1]
-        named = _named_for(topic, "topic", robot.spec.namespace, plan.fleet.naming)
+        named = _renamed_word(topic, "topic", robot.spec.namespace, plan.fleet.naming)
         if space or named == topic:
             yield key.replace(topic, named, 1), value
 
@@ -563,17 +573,17 @@ def of_all(
             made = made._replace(number=-1, process=made.process._replace(after=-1))
             made = made._replace(condition=SIMULATOR if extra else "")
             found += [] if made in found or (extra and not simulators) else [made]
-    shared = (*_shared(plan, names, known, values, files), *found)
+    shared = (*_shared_starts(plan, names, known, values, files), *found)
     if BRIDGE_FILE not in files:
         return shared
-    qos = {key: it for robot in plan.robots for key, it in _qos(plan, robot, "")}
+    qos = {key: it for robot in plan.robots for key, it in _qos_rows(plan, robot, "")}
     rows, served = ({"config_file": File(BRIDGE_FILE), **qos},), services_in(plan.launched_words)
     bridge = Start(*_BRIDGE, parameters=rows, arguments=tuple(served))
     # It is of no use without the simulator.
     return (bridge._replace(condition=SIMULATOR), *shared) if simulators else (*shared, bridge)
 
 
-def _shared(
+def _shared_starts(
     plan: FleetPlan,
     names: NodeNames,
     known: Mapping[str, NodeFacts],
@@ -599,7 +609,7 @@ def _shared(
             started.append(it.node.name)
         if plan.file.cell and name == MOVE_GROUP:
             files = [File(parameters_path(plan.file.cell))]
-        made = _with_own(plan, first, start_of(it, program, tuple(files)), name)
+        made = _with_launch_settings(plan, first, start_of(it, program, tuple(files)), name)
         handed = plan.evidence_of(first).handed_on.get(name)
         rules = made.remappings or (handed.rules if handed else ())
         yield made._replace(remappings=rules, number=-1)

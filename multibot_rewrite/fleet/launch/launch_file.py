@@ -40,14 +40,17 @@ def fleet_starts(
     shown: Sequence[tuple[str, Start]],
     opens: Sequence[tuple[str, Start]],
 ) -> FleetStarts:
-    """Return what the launch file starts; ``each`` is every robot as a fleet of its own, ``files``
-    what else is built, ``bridged`` the topics that bridges bring, ``shown`` the windows of RViz,
-    each with its robot; it ``opens`` those of them that somebody has asked for."""
+    """Return what the launch file starts.
+
+    ``each`` is every robot as a fleet of its own, ``files`` what else is built, ``bridged`` the
+    topics of bridges, ``shown`` the windows of RViz, each with its robot; ``opens`` are those to
+    open."""
     # Whether the launch can replace all substitutions of a file, and there are some.
     found = ((it.path, [known for known, _ in _SUBSTITUTION.findall(it.data)]) for it in files)
     paths = {path: bool(known) and all(known) for path, known in found}
     values = launched_values(plan).values
-    robots = [launch_actions.of_robot(one, paths, bridged, values) for one in each]
+    texts = {it.path: it.data for it in files}
+    robots = [launch_actions.of_robot(one, paths, bridged, values, texts) for one in each]
     environment, robots = _environment(plan, robots)
     simulators = spawn.simulators(plan)
     clocks = {it.spec.name: it.spec.use_sim_time for it in plan.robots}
@@ -83,8 +86,8 @@ def fleet_starts(
 def _environment(
     plan: FleetPlan, robots: Sequence[RobotStarts]
 ) -> tuple[dict[str, str], list[RobotStarts]]:
-    """Return the environment that launch files set for all robots' processes, and the robots with
-    what they set for one. What starts later is outside its robot's domain: it gets that, too."""
+    """Return the environment for all robots' processes, and the robots with their own one."""
+    # What starts later is outside its robot's domain: it gets that, too.
     own = {
         it.spec.name: for_robot(plan.evidence_of(it).environment, it.spec.name)
         for it in plan.robots

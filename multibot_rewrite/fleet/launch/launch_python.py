@@ -22,48 +22,48 @@ _STARTED_APART = "[in_domain(name, ROBOTS[name]()) for name in words or ROBOTS]"
 
 def to_python(it: FleetStarts) -> str:
     """Return the text of the launch file."""
-    body = _text(_part("file and text"), *_parts(it))
-    return _text(_head(it), _imports(body)) + body
+    body = _joined_lines(_fixed_part("file and text"), *_file_parts(it))
+    return _joined_lines(_docstring_lines(it), _import_lines(body)) + body
 
 
 @cache
-def _part(name: str) -> tuple[str, ...]:
+def _fixed_part(name: str) -> tuple[str, ...]:
     """Return the lines of a part that is the same in all launch files."""
     text = files("multibot_rewrite.fleet.launch").joinpath("parts.txt").read_text(encoding="utf-8")
     return tuple(text.partition(f"### {name}\n")[2].partition("\n### ")[0].splitlines())
 
 
-def _text(*parts: Iterable[str]) -> str:
+def _joined_lines(*parts: Iterable[str]) -> str:
     return "".join(f"{line}\n" for part in parts for line in part)
 
 
-def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
+def _file_parts(it: FleetStarts) -> Iterator[Iterable[str]]:
     if any(start.needs for start in it.every):
-        yield "", "", *_part("if_installed")
+        yield "", "", *_fixed_part("if_installed")
     if any(start.brought_up for start in it.every):
-        yield "", "", *_part("brought_up")
+        yield "", "", *_fixed_part("brought_up")
     if it.values:
-        yield "", "", *_part("one_of")
+        yield "", "", *_fixed_part("one_of")
     if any(led.followers for robot in it.robots for led in in_order(robot.starts)):
-        yield "", "", *_part("then")
+        yield "", "", *_fixed_part("then")
     made = functions(it.robots)
     for own in made:
-        yield ("", "", *_function(own))
+        yield ("", "", *_function_lines(own))
     calls = {name: own for own in made for name in own.calls}
-    names = (row for robot in it.robots for row in _call(calls[robot.name], robot.name))
+    names = (row for robot in it.robots for row in _call_lines(calls[robot.name], robot.name))
     yield "", "", "ROBOTS = {", *names, "}"
     if it.domains:
         # As an environment has them.
         numbers = ((one.name, f"{it.domains[one.name]}") for one in it.robots)
         domains = (f"    {value(name)}: {value(number)}," for name, number in numbers)
-        yield "DOMAINS = {", *domains, "}", "", "", *_part("in_domain")
+        yield "DOMAINS = {", *domains, "}", "", "", *_fixed_part("in_domain")
     started = _STARTED_APART if it.domains else _STARTED
-    yield "", "", *(line.replace("{started}", started) for line in _part("chosen"))
-    yield from (("", "", *_part(f"{one} switches")) for one in it.simulators)
-    yield "", "", *_description(it)
+    yield "", "", *(line.replace("{started}", started) for line in _fixed_part("chosen"))
+    yield from (("", "", *_fixed_part(f"{one} switches")) for one in it.simulators)
+    yield "", "", *_description_function(it)
 
 
-def _head(it: FleetStarts) -> Iterator[str]:
+def _docstring_lines(it: FleetStarts) -> Iterator[str]:
     # ament_pep257 wants the text of several lines to begin on the second (D213).
     yield from ('"""', it.head, "")
     yield "Plain launch and launch_ros: read it, edit it, or include it from another launch file."
@@ -75,7 +75,7 @@ def _head(it: FleetStarts) -> Iterator[str]:
         shown = it.driving if len(it.driving) <= _DRIVING else it.driving[:1]
         yield "In other terminals, to drive:"
         yield ""
-        yield from (line for one in shown for line in _shell(one))
+        yield from (line for one in shown for line in _shell_lines(one))
         if len(shown) < len(it.driving):
             yield ""
             yield f"The other robots likewise: with their names in the place of {it.robots[0].name}."
@@ -83,12 +83,12 @@ def _head(it: FleetStarts) -> Iterator[str]:
     yield ""
 
 
-def _imports(body: str) -> Iterator[str]:
+def _import_lines(body: str) -> Iterator[str]:
     if "partial(" in body:
         yield "from functools import partial"
     yield from ("from pathlib import Path", "")
     used = frozenset(re.findall(r"\w+", body))
-    for module, every in (line.split(": ") for line in _part("imports")):
+    for module, every in (line.split(": ") for line in _fixed_part("imports")):
         names = [name for name in every.split() if name in used]
         if module == "launch.actions" and names:
             yield from (f"from {module} import (", *(f"    {name}," for name in names), ")")
@@ -97,7 +97,7 @@ def _imports(body: str) -> Iterator[str]:
     yield ""
 
 
-def _shell(line: str) -> Iterator[str]:
+def _shell_lines(line: str) -> Iterator[str]:
     """Yield the lines of a shell command, at most as wide as the file."""
     words = wrap(line, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
     for number, it in enumerate(words):
@@ -105,16 +105,16 @@ def _shell(line: str) -> Iterator[str]:
         yield f"    {indent}{it}{more}"
 
 
-def _function(it: Function) -> Iterator[str]:
+def _function_lines(it: Function) -> Iterator[str]:
     """Yield the function that starts a robot, or each of several."""
     own = ("name", *it.parameters) if len(it.calls) > 1 else ()
     yield f"def {it.title}({', '.join(own)}):"
     yield f'    """Start {comment(it.starts.description)} in {comment(it.starts.where)}."""'
-    yield from _robot(it.starts)
+    yield from _robot_lines(it.starts)
 
 
-def _call(it: Function, name: str) -> Iterator[str]:
-    """Yield the lines of the table of robots that say what starts one."""
+def _call_lines(it: Function, name: str) -> Iterator[str]:
+    """Yield the lines of the robots' table for the start of one robot."""
     if len(it.calls) == 1:
         yield f"    {value(name)}: {it.title},"
         return
@@ -127,7 +127,7 @@ def _call(it: Function, name: str) -> Iterator[str]:
         yield from (f"    {value(name)}: partial(", *(f"        {one}," for one in given), "    ),")
 
 
-def _robot(it: RobotStarts) -> Iterator[str]:
+def _robot_lines(it: RobotStarts) -> Iterator[str]:
     for name, why in it.left:
         if why:
             text = comment(f"Not started: {name} ({why})")
@@ -143,7 +143,7 @@ def _robot(it: RobotStarts) -> Iterator[str]:
     yield "    ]"
 
 
-def _environment(it: FleetStarts) -> Iterator[str]:
+def _environment_lines(it: FleetStarts) -> Iterator[str]:
     for name, given in it.environment.items():
         own = f"{value(name)}, {value(given.strip(':'))}"
         if given.startswith(":"):
@@ -154,7 +154,7 @@ def _environment(it: FleetStarts) -> Iterator[str]:
             yield f"SetEnvironmentVariable({own}),"
 
 
-def _description(it: FleetStarts) -> Iterator[str]:
+def _description_function(it: FleetStarts) -> Iterator[str]:
     yield "def generate_launch_description():"
     first = "the simulator, then " if it.simulators else ""
     last = ", then the windows for all" if it.windows else ""
@@ -170,9 +170,11 @@ def _description(it: FleetStarts) -> Iterator[str]:
     if it.domains:
         number = value(f"{it.domains['']}")
         yield f"            SetEnvironmentVariable('ROS_DOMAIN_ID', {number}),"
-    yield from (f"            {line}" for line in _environment(it))
+    yield from (f"            {line}" for line in _environment_lines(it))
     for simulator in it.simulators:
-        rows = (line.replace("{options}", it.options) for line in _part(f"{simulator} simulator"))
+        rows = (
+            line.replace("{options}", it.options) for line in _fixed_part(f"{simulator} simulator")
+        )
         yield from (f"            {line}" for line in rows)
     yield from actions(it.shared, 12)
     yield "            OpaqueFunction(function=chosen),"

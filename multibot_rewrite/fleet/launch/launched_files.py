@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that launch files name: parameter files, which are rewritten as those of ``params`` are, and
-where in a robot's namespace bridges run with theirs.
+"""Adds the files that launch files name: parameter files and the namespaces of bridges.
 
 Clearpath starts the bridge of each sensor in NAMESPACE/sensors (clearpath_generator_gz
-launch/sensors.py): relative ROS names of its file are there.
-"""
+launch/sensors.py): relative ROS names of its file are there."""
 
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -37,8 +35,7 @@ NOT_REWRITTEN = declare("MF824", "launched-parameters-not-rewritten", NOTE, form
 
 
 class _Named(NamedTuple):
-    """A file that a launch names, what the node gets of it, where the launch has that node, and the
-    robot whose names are in it."""
+    """A file that a launch names, the node's text of it, its place, and the robot in its names."""
 
     path: str
     text: str
@@ -47,20 +44,18 @@ class _Named(NamedTuple):
 
 
 def with_launched_files(file: FleetFile) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
-    """Return the fleet with parameter files that only its launch files name, and for each robot by
-    its name notes of those that are left out. Raises InputError for a launch file that cannot be
-    read. Robots with the same launch files have those of the first; an argument that names a file
-    by ``{robot}`` makes them differ."""
+    """Return the fleet with parameter files that only launch files name, and notes by robot."""
+    # Robots with the same launch files have those of the first.
     first = {it.launch: it for it in reversed(file.robots) if it.launch}
-    named = {launch: tuple(_named(spec)) for launch, spec in first.items()}
-    found = [_with(it, named.get(it.launch, ())) for it in file.robots]
-    bridged = {launch: _bridged(spec) for launch, spec in first.items()}
+    named = {launch: tuple(_named_files(spec)) for launch, spec in first.items()}
+    found = [_with_files(it, named.get(it.launch, ())) for it in file.robots]
+    bridged = {launch: _bridge_rows(spec) for launch, spec in first.items()}
     robots = tuple(_with_bridges(it, *bridged.get(it.launch, ({}, ()))) for it, _ in found)
     return file._replace(robots=robots), {it.name: notes for it, notes in found}
 
 
-def _named(spec: RobotSpec) -> Iterator[_Named]:
-    """Yield the parameter files that exist without the launch, each once."""
+def _named_files(spec: RobotSpec) -> Iterator[_Named]:
+    """Yield the parameter files that launch files name and that exist, each once."""
     seen: set[str] = set()
     graph = launch_of(spec.launch, spec.words[0])
     robot = graph.robots[0] if graph.robots else ""
@@ -79,9 +74,8 @@ def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
             yield ParameterText(path, yaml_of(path).text, path)
 
 
-def _bridged(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
-    """Return the topics in arguments of bridges as text of bridge files, by launch file, with each
-    bridge's first row in its line there; and the files that bridges are given."""
+def _bridge_rows(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
+    """Return bridge rows in arguments as texts by launch file and line, and bridges' own files."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     found: dict[str, str] = {}
     nodes = launch_of(spec.launch, spec.words[0]).nodes
@@ -113,7 +107,7 @@ def _sets_parameters(path: str) -> bool:
         return False
 
 
-def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Finding]]:
+def _with_files(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Finding]]:
     """Return the robot with the files that it lacked, and notes of those that are left out."""
     own, filled, notes = list(spec.related_files.get(PARAMS, ())), [], []
     written = filter(None, (spec.description, spec.srdf, spec.simulated))
@@ -141,16 +135,15 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
-    """Return whether the launch makes the same of the file for all robots, line by line that file."""
+    """Return whether the launch makes one text of the file for all robots, line by line."""
     same = len(it.text.splitlines()) == len(text.splitlines())
     named = {word for word in spec.words if word in it.text and word not in text}
     return same and not named and _SUBSTITUTED not in it.text
 
 
 def with_one_map(file: FleetFile) -> FleetFile:
-    """Return the fleet with the topics of launched map servers among those of all robots. Robots
-    with different maps have a server each, as nav2_bringup starts it. Raises InputError for a
-    launch file that cannot be read."""
+    """Return the fleet with the topics of launched map servers among those of all robots."""
+    # Robots with different maps have a server each, as nav2_bringup starts it.
     maps = sets_by_key(row for spec in file.robots for row in _maps(spec))
     apart = {it for it in maps if len(maps[it]) > 1 or file.params_style == BRINGUP}
     own = tuple(dict.fromkeys((*file.own_nodes, *sorted(apart))))
@@ -177,9 +170,8 @@ _PACKAGES = ("ros_gz_bridge", "ros_ign_bridge")
 
 
 def with_bridge_namespaces(file: FleetFile) -> FleetFile:
-    """Return the fleet with the namespaces that launch files give to bridges, where it has none.
-    Raises InputError for a launch file that cannot be read. A file of the launch is the robot's of
-    the same name, as for parameter files."""
+    """Return the fleet with the namespaces that launch files give to bridges, where it has none."""
+    # A file of the launch is the robot's of the same name, as for parameter files.
     # A launch file may be written for one of the robots.
     robots = {word for it in file.robots for word in it.words}
     return file._replace(robots=tuple(_with_namespaces(it, robots) for it in file.robots))
@@ -198,7 +190,7 @@ def _with_namespaces(spec: RobotSpec, robots: Collection[str]) -> RobotSpec:
 
 
 def _below(node: LaunchedNode, words: Collection[str]) -> str:
-    """Return the namespace of a launched node without the robot's, which is one of the words."""
+    """Return a launched node's namespace below the robot's."""
     own = node.namespace.strip("/")
     for word in sorted(words, key=len, reverse=True):
         if f"{own}/".startswith(f"{word}/"):

@@ -37,9 +37,10 @@ def launched_robot(
     parameters: KnownNodes,
     release: str,
 ) -> Launched | None:
-    """Return the nodes of a robot with these launch files, in a release; None without any.
+    """Return the nodes of a robot with these launch files in a release; None without any.
+
     ``words`` stand for the robot in names, the first one for ``{robot}`` in arguments. Raises
-    InputError for a launch file that cannot be read, and UsageError for an unknown placeholder."""
+    InputError for a launch file that cannot be read, UsageError for an unknown placeholder."""
     if not orders:
         return None
     mine = _own_orders(orders, words[0])
@@ -58,15 +59,13 @@ def known_here(
 
 
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
-    """Return all that these launch files start, with the robot in the place of ``{robot}``; of
-    several robots the first one. Raises as ``launched_robot``."""
-    graph = with_extras(of_first_robot(joined([*map(_read, _own_orders(orders, robot))])))
-    return _with_off(graph, {name for it in orders for name, _ in it.arguments})
+    """Return what launch files start, for one of their robots; raises as ``launched_robot``."""
+    graph = with_extras(of_first_robot(joined([*map(_read_once, _own_orders(orders, robot))])))
+    return _with_switched_on(graph, {name for it in orders for name, _ in it.arguments})
 
 
-def _with_off(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
-    """Return launch files with what an argument turns on among their nodes, if it decides nothing that
-    the fleet starts by itself, and is not ``given`` or one of every fleet."""
+def _with_switched_on(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
+    """Return launch files with what an argument turns on, if it decides nothing else here."""
     own = (it for it in graph.nodes if not may_be_off(it))
     fixed = {switch.name for it in own for switch in it.process.switches}
     # Of two of one name only one is planned.
@@ -82,9 +81,8 @@ def _with_off(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
     return graph._replace(nodes=(*graph.nodes, *off), idle=idle)
 
 
-def _read(order: LaunchOrder) -> LaunchGraph:
-    """Return the graph of a launch file, which is read once, whatever the spelling of its path;
-    errors name the path that was given."""
+def _read_once(order: LaunchOrder) -> LaunchGraph:
+    """Return the graph of a launch file, read once for all spellings of its path."""
     whole = _with_full_path(order)
     try:
         graph = once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
@@ -157,8 +155,8 @@ def nodes_with(
 def under_plugins(
     nodes: Sequence[NodeFacts], launched: Launched | None, rules: Sequence[RemapRule], release: str
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes; controllers get the remap rules of the plugin that loads them, unless a
-    launch file starts their controller manager."""
+    """Return the nodes, controllers with the remap rules of the plugin that loads them."""
+    # Not if a launch file starts their controller manager.
     if launched and MANAGER in launched.started:
         return tuple(nodes)
     return tuple(under_plugin(it, rules, release) for it in nodes)
@@ -170,12 +168,12 @@ def given_with(launched: Launched | None, given: Sequence[Run]) -> tuple[Run, ..
         return tuple(given)
     started = {it.node: it for it in launched.given}
     # In the order of the files, so that they can be compared with what is made of them.
-    own = [_both(it, started.pop(it.node)) if it.node in started else it for it in given]
+    own = [_merged_settings(it, started.pop(it.node)) if it.node in started else it for it in given]
     return (*own, *started.values())
 
 
-def _both(own: Run, launched: Run) -> Run:
-    """Return both settings as one; a value that both have keeps its place in the robot's own file."""
+def _merged_settings(own: Run, launched: Run) -> Run:
+    """Return two settings as one; a value in both keeps its place in the robot's own file."""
     same = {
         k: it
         for k, it in own.values.items()

@@ -24,8 +24,7 @@ _VALUED = (
 
 
 class Simulator(NamedTuple):
-    """Its world (a path or the name of one of its own, empty if none is said), further options,
-    whether it is without a window, and if it is Gazebo Classic."""
+    """The simulator of launch files: its world (path, name or empty), options, window and kind."""
 
     world: str = ""
     options: tuple[str, ...] = ()

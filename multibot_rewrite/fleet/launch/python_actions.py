@@ -26,8 +26,7 @@ _SHORT = 66
 
 
 class OfRobot(NamedTuple):
-    """What the nodes of a robot have in common: the files that its function calls ``params``, and the
-    parameter of their clock."""
+    """What the nodes of a robot share: the files that its function calls ``params``, the clock."""
 
     files: tuple[File, ...] = ()
     clock: Any = Code("CLOCK")
@@ -39,8 +38,8 @@ OF_ALL = OfRobot()
 def actions(
     starts: Iterable[Start], indent: int, own: OfRobot = OF_ALL, otherwise: str = ""
 ) -> Iterator[str]:
-    """Yield what is started: in a group what depends on one launch argument, and what needs one
-    package, which says ``otherwise`` where that is not installed."""
+    """Yield what is started, in groups by launch argument and by needed package."""
+    # ``otherwise`` is the message if a package is not installed.
     space, ordered = " " * indent, groupby(in_order([*starts]), lambda it: it.start.needs)
     for needs, several in ordered:
         if needs:
@@ -65,7 +64,7 @@ def _conditional(
 
 
 def _grouped(words: Sequence[str], inner: Iterable[str], indent: int) -> Iterator[str]:
-    """Yield what is started in a group below a group, one for each launch argument."""
+    """Yield actions in nested groups, one for each launch argument."""
     if not words:
         yield from inner
         return
@@ -84,19 +83,19 @@ def _processes(several: Iterable[Led], indent: int, own: OfRobot) -> Iterator[st
     for it in several:
         if it.start.process.delay:
             yield from (f"{space}TimerAction(", f"{space}    period={it.start.process.delay!r},")
-            inner = _led(it, indent + 8, own)
+            inner = _lines_with_events(it, indent + 8, own)
             yield from (f"{space}    actions=[", *inner, f"{space}    ],", f"{space}),")
         else:
-            yield from _led(it, indent, own)
+            yield from _lines_with_events(it, indent, own)
 
 
-def _led(it: Led, indent: int, own: OfRobot) -> Iterator[str]:
+def _lines_with_events(it: Led, indent: int, own: OfRobot) -> Iterator[str]:
     """Yield a process, and what starts at its events."""
     space = " " * indent
     if not it.followers:
-        yield from _process(it.start, indent, own)
+        yield from _process_lines(it.start, indent, own)
         return
-    yield from (f"{space}*then(", *_process(it.start, indent + 4, own))
+    yield from (f"{space}*then(", *_process_lines(it.start, indent + 4, own))
     for event in dict.fromkeys(EVENTS.values()):
         if several := it.at(event):
             inner = _conditional(several, it.start.terms, indent + 8, own)
@@ -104,17 +103,17 @@ def _led(it: Led, indent: int, own: OfRobot) -> Iterator[str]:
     yield f"{space}),"
 
 
-def _process(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
+def _process_lines(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
     space = " " * indent
     if it.process.is_include:
-        yield from (f"{space}{line}" for line in _include(it))
+        yield from (f"{space}{line}" for line in _include_lines(it))
     elif it.brought_up:
-        yield from (f"{space}*brought_up(", *_action(it, indent + 4, own), f"{space}),")
+        yield from (f"{space}*brought_up(", *_action_lines(it, indent + 4, own), f"{space}),")
     else:
-        yield from _action(it, indent, own)
+        yield from _action_lines(it, indent, own)
 
 
-def _include(it: Start) -> Iterator[str]:
+def _include_lines(it: Start) -> Iterator[str]:
     """Yield a launch file of a package, in the namespace of its robot and under its rules."""
     yield from ("GroupAction(", "    [")
     for variable, setting in it.environment.items():
@@ -133,20 +132,20 @@ def _include(it: Start) -> Iterator[str]:
     yield from ("        ),", "    ],", "),")
 
 
-def _action(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
+def _action_lines(it: Start, indent: int, own: OfRobot) -> Iterator[str]:
     """Yield a process or a component."""
     space = " " * indent
-    yield f"{space}{_kind(it)}("
-    yield from (f"{space}    {line}" for line in _keywords(it, own))
+    yield f"{space}{_action_class(it)}("
+    yield from (f"{space}    {line}" for line in _keyword_lines(it, own))
     if it.components:
         yield f"{space}    composable_node_descriptions=["
         for one in it.components:
-            yield from _action(one, indent + 8, own)
+            yield from _action_lines(one, indent + 8, own)
         yield f"{space}    ],"
     yield f"{space}),"
 
 
-def _kind(it: Start) -> str:
+def _action_class(it: Start) -> str:
     if it.plugin:
         return "ComposableNode"
     if not it.package:
@@ -156,7 +155,7 @@ def _kind(it: Start) -> str:
     return "LifecycleNode" if it.brought_up else "Node"
 
 
-def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
+def _keyword_lines(it: Start, own: OfRobot) -> Iterator[str]:
     if it.components and not it.package:
         yield f"target_container={value(it.name)},"
         return
@@ -165,7 +164,7 @@ def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
             if text := getattr(it, name):
                 yield f"{name}={value(text)},"
         if it.arguments:
-            yield from lines("arguments=", [*_pairs(it.arguments)], ",")
+            yield from lines("arguments=", [*_argument_pairs(it.arguments)], ",")
         count = len(own.files)
         common = count > 0 and it.parameters[:count] == own.files
         first, rest = ([Code("*params")], it.parameters[count:]) if common else ([], it.parameters)
@@ -175,7 +174,7 @@ def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
             yield from (f"    ({value(old)}, {value(new)})," for old, new in it.remappings)
             yield "],"
     else:
-        yield from lines("cmd=", [*_pairs((it.executable, *it.arguments))], ",")
+        yield from lines("cmd=", [*_argument_pairs((it.executable, *it.arguments))], ",")
     if it.environment:
         set_ = {name: _with_inherited(name, text) for name, text in it.environment.items()}
         yield from lines("additional_env=", set_, ",")
@@ -203,7 +202,7 @@ def lines(before: str, it: Any, after: str = "") -> list[str]:
     return [f"{before}{first}", *below, f"{last}{after}"]
 
 
-def _pairs(words: Iterable[str | File]) -> Iterator[Code]:
+def _argument_pairs(words: Iterable[str | File]) -> Iterator[Code]:
     """Yield the arguments of a program: a flag and its value are on one line."""
     flag = ""
     for it in words:
@@ -233,10 +232,10 @@ def value(it: Any) -> str:
         return "{" + ", ".join(f"{value(key)}: {value(one)}" for key, one in it.items()) + "}"
     if isinstance(it, list):
         return f"[{', '.join(map(value, it))}]"
-    return _text(it) if isinstance(it, str) else repr(it)
+    return _quoted_text(it) if isinstance(it, str) else repr(it)
 
 
-def _text(it: str) -> str:
+def _quoted_text(it: str) -> str:
     """Return the Python of a text; the share folder of a package is asked for when it starts."""
     parts = in_shares(it)
     if len(parts) == 1:

@@ -17,11 +17,11 @@ TOGETHER: Mapping[str, int] = {}
 
 
 class RobotStarts(NamedTuple):
-    """What one robot runs: ``description`` is the name of its file, ``where`` its namespace in words;
-    ``files`` are its parameter files, ``left`` are nodes that are not started, each with the reason.
-    Where a package that one of them needs is not installed, ``not_bridged`` is said. ``nodes`` are the
-    full names of those that are started, ``clock`` is its ``use_sim_time`` where not all robots have
-    the same."""
+    """What one robot runs; ``where`` is its namespace in words, ``files`` its parameter files.
+
+    ``left`` are nodes that are not started, with the reason; ``not_bridged`` is the message if a
+    needed package is missing; ``nodes`` are the full names of started nodes, ``clock`` its
+    ``use_sim_time`` if robots differ."""
 
     name: str
     description: str
@@ -35,14 +35,14 @@ class RobotStarts(NamedTuple):
 
 
 class FleetStarts(NamedTuple):
-    """All that the launch file of a fleet starts: the simulators, what is for all robots, the robots,
-    the windows for all. ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to
-    type; ``world`` is the simulator's by default, ``domains`` has that of each robot by its name, and
-    of all (empty name), where they are not in one. ``shown`` are all windows, those that a fleet
-    without any config has among them: the launch file does not open these. ``environment`` is that of
-    all processes; a value with ``:`` in front or at the end is added to what is there. ``options`` are
-    further ones of gz-sim, ``headless`` is whether it has no window by default. ``switches`` are
-    launch arguments of the robots' launch files, with the values by which they start all of it."""
+    """All that the launch file of a fleet starts: simulators, shared nodes, robots, windows.
+
+    ``head`` is its title, ``use_sim_time`` the default, ``driving`` are lines to type; ``world``
+    is the default one, ``domains`` has those of robots and of all (empty name). ``shown`` are
+    all windows, also those that are not opened. ``environment`` is for all processes; a value
+    with ``:`` in front or at the end is added. ``options`` and ``headless`` are of gz-sim.
+    ``switches`` are arguments of the robots' launch files, with the values by which these start
+    all of it."""
 
     head: str
     simulators: Sequence[str]
@@ -103,9 +103,9 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
 
 
 def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
-    """Return the fleet with launch arguments that turn off, or on, what launch files start with them:
-    those of one value, by which these start nothing else as they do by ``others``. What waits for
-    something that has a condition of ours has not those of that, too."""
+    """Return the fleet with launch arguments that turn on or off what launch files start."""
+    # Only those of one value, by which ``others`` change nothing. What waits for something with a
+    # condition of ours has not those of that, too.
     every = dict.fromkeys(one[:2] for start in it.every for one in start.process.switches)
     values, taken = lists_by_key(every), {*OWN_ARGUMENTS, *others}
     own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
@@ -116,8 +116,8 @@ def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
 
 
 def _switched(starts: Sequence[Start], own: Collection[str]) -> tuple[Start, ...]:
-    """Return processes under the launch arguments that decide about them; components under further ones
-    than their container are loaded apart from it."""
+    """Return processes with the conditions of launch arguments."""
+    # Components with more conditions than their container are loaded apart from it.
     numbered = {it.number: it for it in starts if it.number >= 0}
 
     def with_condition(it: Start) -> Start:

@@ -54,8 +54,7 @@ from multibot_rewrite.related_files.yaml_text import (
 
 
 def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
-    """Return every bridge file of a fleet. Raises InputError for a bridge file that cannot be read
-    or rewritten."""
+    """Return every bridge file of a fleet; raises InputError if one cannot be read or rewritten."""
     fleet = plan.fleet
     # A vendor who bridges transforms bridges all of them.
     vendors = (it.spec for it in plan.robots if it.spec.launch and brings_transforms(it.spec))
@@ -78,7 +77,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
             yield from file.own.findings
             yield ReadFile(file.own.file, tuple(group.robots))
         for robot in group.robots:
-            made = list(_for_robot(robot, files, topics))
+            made = list(_robot_bridges(robot, files, topics))
             yield from made
             own = [it for it in unbridged if it.robot == robot.spec.namespace]
             texts = [it for it in made if isinstance(it, OutputFile)]
@@ -94,10 +93,10 @@ def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
                 line = line_of(robot.member.source, it.tag, number)
                 message = f"{it.what} of {robot.spec.name} is not bridged: {it.why}"
                 yield NO_TOPIC.finding(message, it.hint, file=robot.spec.description, line=line)
-    yield from _for_all([files for _, files in groups], topics, simulators(plan) == ["gz"])
+    yield from _shared_bridge([files for _, files in groups], topics, simulators(plan) == ["gz"])
 
 
-def _for_robot(
+def _robot_bridges(
     robot: RewrittenRobot, files: dict[str, BridgeFile], topics: Iterable[BridgedTopic]
 ) -> FilesAndFindings:
     spec = robot.spec
@@ -115,11 +114,10 @@ def _for_robot(
         yield OutputFile(gz_bridge_path(robot), text.encode(), tuple(files))
 
 
-def _for_all(
+def _shared_bridge(
     groups: Iterable[dict[str, BridgeFile]], topics: Sequence[BridgedTopic], is_timed: bool
 ) -> FilesAndFindings:
-    """Yield the bridge of what all robots share, if there is anything to bridge; ``is_timed``:
-    their clock is that of Gazebo."""
+    """Yield the bridge of what all robots share; ``is_timed`` if their clock is that of Gazebo."""
     shared = dict.fromkeys(
         (path, file.shared) for files in groups for path, file in files.items() if file.shared
     )
@@ -136,7 +134,7 @@ NO_TOPIC = declare("MF509", "sensor-without-gz-topic", WARNING, formats=("fleet-
 def _is_carried(
     topic: UnbridgedTopic, made: Iterable[OutputFile], others: Iterable[BridgedTopic]
 ) -> bool:
-    """Return whether a user's file has a row for a topic, which only who knows the world can write."""
+    """Return whether a user's file has a row for a topic that depends on the world."""
     known = {it.gz.lstrip("/") for it in others}
     for row in (row for it in made for row in items(read_yaml(it.data, it.path).root)):
         name = text_of(row, GZ) or text_of(row, BOTH)
@@ -165,9 +163,9 @@ def fill_bridge(template: FileTemplate, namespace: str, tag: str, model: str) ->
 def merge_bridges(
     texts: Iterable[tuple[str, str]], generated: Iterable[BridgedTopic]
 ) -> tuple[str, tuple[Finding, ...]]:
-    """Return one file from several (file, text) and the bridged topics of descriptions. An entry of
-    a file wins over a generated one with the same gz topic. Two gz topics that are bridged to one
-    ROS topic are an error."""
+    """Return one bridge file of several texts and generated topics, and findings."""
+    # An entry of a file wins over a generated one with the same gz topic. Two gz topics on one ROS
+    # topic are an error.
     parts: list[str] = []
     findings: list[Finding] = []
     # By gz topic the file, by ROS topic its first gz topic.

@@ -19,13 +19,12 @@ _PLACEHOLDERS = ("$(", "${", "<", *ZONES)
 
 
 def with_built(plan: System, folder: str) -> System:
-    """Return the plan with the parameters in the files of ``folder``, which has a folder for each
-    robot. What the plan itself says of a node comes first. Raises InputError for a file that rcl
-    rejects."""
+    """Return the plan with the parameters in the files of ``folder``; raises InputError as rcl."""
+    # The folder has one for each robot. What the plan says of a node comes first.
     nodes = nodes_by_robot(plan)
     found = (
         it for robot in plan.robots
-        for it in _of_robot(robot.space, nodes[robot.name], os.path.join(folder, robot.name))
+        for it in _parameters_of_robot(robot.space, nodes[robot.name], os.path.join(folder, robot.name))
     )  # fmt: skip
     built: dict[str, dict[str, Parameter]] = {}
     for node, parameters in found:
@@ -41,7 +40,7 @@ def with_built(plan: System, folder: str) -> System:
     return plan._replace(parameters=(*plan.parameters, *more))
 
 
-def _of_robot(
+def _parameters_of_robot(
     space: str, nodes: Sequence[str], folder: str
 ) -> Iterator[tuple[str, dict[str, Parameter]]]:
     for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else ():
@@ -49,7 +48,7 @@ def _of_robot(
         data = read_file(path) if name.endswith((".yaml", ".yml")) else b""
         if PARAMETERS.encode() in data:
             document = read_yaml(data, path)
-            names = _names(document, space, nodes)
+            names = _full_names_in_file(document, space, nodes)
             for node, values in named_values(document, names):
                 found = {}
                 for key, (value, place) in values.items():
@@ -60,9 +59,9 @@ def _of_robot(
                 yield names[node], found
 
 
-def _names(document: YamlText, space: str, nodes: Sequence[str]) -> dict[str, str]:
-    """Return the full names of a robot's nodes by the names that a file has for them. A file for
-    nav2_bringup has them below the robot's namespace; all others begin with a slash."""
+def _full_names_in_file(document: YamlText, space: str, nodes: Sequence[str]) -> dict[str, str]:
+    """Return full names of a robot's nodes by the names that a file has for them."""
+    # For nav2_bringup they are below the namespace; all others begin with a slash.
     if any(key.value.startswith("/") for key, _ in pairs(document.root)):
         return {it: it for it in nodes}
     above = f"/{space}"

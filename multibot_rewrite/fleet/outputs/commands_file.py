@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``commands.md``: what places, spawns and drives each robot, loads its controllers, opens RViz, and
-starts MoveIt."""
+"""``commands.md``: commands to place, spawn and drive robots, and for controllers, RViz, MoveIt."""
 
 from __future__ import annotations
 
@@ -17,10 +16,11 @@ from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
-from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.conditions import readable
 from multibot_rewrite.planning.start import Start, shell_line
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER
-from multibot_rewrite.planning.ways import SPAWNER, started
+from multibot_rewrite.planning.ways import started
+from multibot_rewrite.system.records import SPAWNER
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
 TAKING = "\nThe vendor's launch files take its files, in the folder of this file:\n\n```sh\n"
@@ -29,8 +29,7 @@ TAKING = "\nThe vendor's launch files take its files, in the folder of this file
 def commands_file(
     plan: FleetPlan, each: Iterable[FleetPlan], windows: Sequence[tuple[str, Start]]
 ) -> FilesAndFindings:
-    """Yield the commands robot by robot, and the parameters of those that amcl has to place.
-    ``each`` is every robot as a fleet of its own, ``windows`` open RViz, each with its robot."""
+    """Yield the commands by robot, and amcl's start parameters; ``windows`` open RViz."""
     domains = plan.file.apart.numbers
     clocks: set[bool | None] = set()
     rows = [f"# Commands of this fleet{facts_of_release(plan.file.distro)}\n"]
@@ -43,13 +42,13 @@ def commands_file(
         rows += [f"export ROS_DOMAIN_ID={domains[robot.spec.name]}\n"] if domains else []
         clock = robot.spec.use_sim_time
         clocks.add(clock)
-        rows += _lines((it.start for it in poses.transforms), clock)
+        rows += _sh_lines((it.start for it in poses.transforms), clock)
         if is_simulated(robot) and not spawn.is_of_vendor(one.evidence_of(robot).placing):
             rows += [spawn.command_of(it, robot) for it in spawn.in_folder(one)]
         rows += _controllers(one)
         relayed = (it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file))
         driven = (it.start for it in teleop.teleops(one))
-        rows += [*_lines((*relayed, *moveit_commands(one), *driven), clock), "```\n"]
+        rows += [*_sh_lines((*relayed, *moveit_commands(one), *driven), clock), "```\n"]
         if prefix := robot.frame_prefix:
             rows.append(
                 f"\nStart its {STATE_PUBLISHER} with `-p frame_prefix:={prefix}` as well.\n"
@@ -65,12 +64,12 @@ def commands_file(
     both = clocks.pop() if len(clocks) == 1 else None
     if windows:
         there = (f"ROS_DOMAIN_ID={domains[it]} " if it in domains else "" for it, _ in windows)
-        lines = map("".join, zip(there, _lines((it for _, it in windows), both), strict=True))
+        lines = map("".join, zip(there, _sh_lines((it for _, it in windows), both), strict=True))
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]
     yield OutputFile(COMMANDS, "".join(rows).encode())
 
 
-def _lines(starts: Iterable[Start], use_sim_time: bool | None) -> Iterator[str]:
+def _sh_lines(starts: Iterable[Start], use_sim_time: bool | None) -> Iterator[str]:
     """Yield the lines that start processes, with the clock of the fleet file, if it sets one."""
     clock = () if use_sim_time is None else ({"use_sim_time": str(use_sim_time).lower()},)
     for it in starts:
@@ -83,7 +82,7 @@ def _controllers(plan: FleetPlan) -> Iterator[str]:
     # What a launch file spawns is started, if later.
     spawned = plan.evidence_of(robot).spawned
     facts = (it for it in plan.fleet.facts if it.when and it.name not in spawned)
-    when = {it.name: said(it.when) for it in facts}
+    when = {it.name: readable(it.when) for it in facts}
     for it in started(plan.fleet.table):
         if it.way == SPAWNER:
             condition = when.get(it.node.node, "")

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files of controllers that descriptions load: they are rewritten as the files of ``params`` are,
-and each robot's description loads the one that was made for it.
+"""Gives each robot's description the controller file that was made for that robot.
 
 gz_ros2_control and gazebo_ros2_control hand ``<parameters>`` on as ``--params-file``
-(gz_ros2_control_plugin.cpp), and rcl opens it as it is: there is no ``package://`` and no ``$(find
-...)``, and a relative path is one from where Gazebo was started."""
+(gz_ros2_control_plugin.cpp), and rcl opens it as it is: there is no ``package://`` and no
+``$(find ...)``, and a relative path is one from where Gazebo was started."""
 
 from __future__ import annotations
 
@@ -36,9 +35,8 @@ OTHER_CONTROLLER_FILE = declare(
 
 
 def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tuple[Finding, ...]]:
-    """Return what the simulator gets, with the paths of the files made for this robot in
-    ``folder``. Without a ``folder`` nothing is written, and it stays as it is. So does that of a
-    real robot, which loads no file for its simulator's plugin."""
+    """Return what the simulator gets, with the paths of this robot's files in ``folder``."""
+    # It is unchanged without ``folder``, and for a real robot.
     if robot.spec.simulator == REAL:
         return robot.description, ()
     source = robot.member.inventory.document.source
@@ -102,7 +100,7 @@ def is_same(path: str, file: str, description: str) -> bool:
 
 
 def _in_sources(path: str, description: str) -> Iterator[str]:
-    """Yield the file of a package's sources that a build installs as the path, which is not there."""
+    """Yield the source file that a build installs as a path that does not exist."""
     match = IN_PACKAGE.fullmatch(path)
     if match:
         *names, rest = match.groups()
@@ -122,9 +120,8 @@ NOT_FOLLOWED = declare("MF834", "loaded-file-not-found", NOTE, formats=("fleet",
 
 
 def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
-    """Return the robot with the files that its description loads among its parameter files. One
-    that has the name of a listed file is left out: ``OTHER_CONTROLLER_FILE`` reports it. A real
-    robot loads none."""
+    """Return the robot with files that its description loads among its parameter files."""
+    # One with the name of a listed file is left out: ``OTHER_CONTROLLER_FILE`` reports it.
     spec = robot.spec
     file, params = spec.simulated or spec.description, spec.related_files.get(PARAMS, ())
     more: list[str] = []

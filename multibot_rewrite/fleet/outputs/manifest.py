@@ -19,9 +19,7 @@ NOTE = ".manifest.next.json"
 
 
 class OutputChanges(NamedTuple):
-    """Paths below the output folder. ``write``: new or different. ``remove``: written by an earlier
-    build, not by this one. ``foreign``: to be overwritten, but not written by a build. ``edited``:
-    changed since an earlier build wrote them."""
+    """Paths that a build writes, removes, overwrites without having written, or finds edited."""
 
     write: tuple[str, ...]
     remove: tuple[str, ...]
@@ -77,8 +75,7 @@ def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
 def output_changes(
     files: Iterable[OutputFile], known: Mapping[str, str], there: Mapping[str, str]
 ) -> OutputChanges:
-    """Return what a build must change; ``known`` are the hashes of the last build, ``there`` those
-    of the files on disk."""
+    """Return what a build must change, by the hashes of the last build and those on disk."""
     wanted = {it.path: hash_of(it.data) for it in files}
     write = [path for path, hash_ in wanted.items() if there.get(path) != hash_]
     remove = [path for path in known if path not in wanted and path in there]

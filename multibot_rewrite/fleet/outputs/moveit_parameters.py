@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``NAME/moveit_parameters.yaml``: a robot's SRDF and MoveIt files as the parameters of its move_group;
-and the files of a cell: the URDF and SRDF of all arms, the parameters of their one move_group.
+"""``NAME/moveit_parameters.yaml`` for each robot's move_group, and the files of a cell.
 
-In place of what MoveItConfigsBuilder makes in a launch file, so move_group, servo_node and rviz2 can be
-started with it. Source: moveit2 4d8410635 moveit_configs_utils/moveit_configs.py (``to_dict``),
-moveit_configs_builder.py, and its default_configs/ompl_planning.yaml of each release.
-
-Controllers stay in the namespaces of their arms, and so does the name by which move_group asks for
-their actions (moveit2 2.12.4 action_based_controller_handle.h, ``getActionName``)."""
+They replace what MoveItConfigsBuilder makes in a launch file, so move_group, servo_node and
+rviz2 can be started with them. Source: moveit2 4d8410635 moveit_configs_utils/moveit_configs.py
+(``to_dict``), moveit_configs_builder.py, and its default_configs/ompl_planning.yaml of each
+release. Controllers stay in the namespaces of their arms, and so does the name by which
+move_group asks for their actions (moveit2 2.12.4 action_based_controller_handle.h,
+``getActionName``)."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
@@ -32,13 +31,11 @@ from multibot_rewrite.fleet.outputs.output_file import (
     own_yaml,
     path_for,
 )
-from multibot_rewrite.fleet.robots.joined_robots import Arm, joined_arms
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
 from multibot_rewrite.planning.start import File, Start, shell_line
 from multibot_rewrite.planning.ways import started
 from multibot_rewrite.related_files.engine import splices_of
-from multibot_rewrite.related_files.joined import PartMoveit, joined_moveit
 from multibot_rewrite.related_files.moveit.file_kind import (
     ABOVE,
     EMPTY,
@@ -54,6 +51,9 @@ from multibot_rewrite.related_files.names.rename_map import spell
 from multibot_rewrite.related_files.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.related_files.rviz.rewrite import RvizText
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml, replaced, spliced
+
+if TYPE_CHECKING:
+    from multibot_rewrite.related_files.joined import PartMoveit
 
 FILE = "moveit_parameters.yaml"
 # Package and executable of the nodes that take it, by their names in the node set.
@@ -75,7 +75,7 @@ def has_moveit(robot: RewrittenRobot) -> bool:
 
 
 def moveit_commands(plan: FleetPlan) -> Iterator[Start]:
-    """Yield what a person starts of the one robot of a plan: move_group and servo_node."""
+    """Yield what a user starts for the one robot of a plan: move_group and servo_node."""
     (robot,) = plan.robots
     servo = any(
         file_kind(own_yaml(robot.spec, it)) == OF_SERVO
@@ -119,7 +119,10 @@ def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mappin
     found: dict[str, Any] = {SEMANTIC: srdf, "publish_robot_description_semantic": True}
     pipelines: list[str] = []
     for path, text in texts.items():
-        kind, data = file_kind(read_yaml(text.encode(), path)), _plain(load_yaml(text, path)) or {}
+        kind, data = (
+            file_kind(read_yaml(text.encode(), path)),
+            _without_nulls(load_yaml(text, path)) or {},
+        )
         if kind == PLANNING and (name := pipeline_of(path)):
             pipelines.append(name)
             found.setdefault(name, {}).update(_with_plugins(name, data, release))
@@ -136,8 +139,7 @@ def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mappin
 
 
 def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str]) -> dict[str, Any]:
-    """Return what ``to_dict`` of moveit_configs_utils has for move_group; ``texts`` are the MoveIt
-    files by path. Raises InputError for a file that is none."""
+    """Return move_group's parameters as ``to_dict`` of moveit_configs_utils; raises InputError."""
     found: dict[str, Any] = {"robot_description": description}
     if srdf:
         found[SEMANTIC] = srdf
@@ -160,10 +162,10 @@ def _with_plugins(name: str, data: Mapping[str, Any], release: str) -> Mapping[s
     return {**load_own_yaml(__file__, "moveit_planning.yaml")[of_release], **data}
 
 
-def _plain(value: Any) -> Any:
+def _without_nulls(value: Any) -> Any:
     """Return a value as rcl takes it: without null, and without lists of several types."""
     if isinstance(value, dict):
-        items = ((str(key), _plain(it)) for key, it in value.items())
+        items = ((str(key), _without_nulls(it)) for key, it in value.items())
         return {key: it for key, it in items if it is not None and it not in ([], {})}
     if not isinstance(value, list):
         return value
@@ -204,11 +206,13 @@ DISAGREE = declare("MF836", "arms-of-a-cell-disagree", WARNING, formats=("fleet"
 
 
 def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindings:
-    """Yield the files of a fleet's cell, if it has one, made from the ``files`` of its robots.
-    Raises InputError where the arms cannot be joined."""
+    """Yield the files of a fleet's cell from those of its robots; raises InputError."""
     cell = plan.file.cell
     if cell is None:
         return
+    from multibot_rewrite.fleet.robots.joined_robots import Arm, joined_arms  # few have a cell
+    from multibot_rewrite.related_files.joined import joined_moveit
+
     made = {it.path: it.data for it in files}
     tree = builtin_tree(plan.file.definitions, plan.file.distro, ROS_2)
     world = world_of(plan.file, plan.fleet.naming)
@@ -218,7 +222,7 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
         for spec in [it.spec]
     ]
     joined = joined_arms(cell, world, arms, tree)
-    moveit = [(it, robot) for robot in plan.robots for it in _moveit(plan, robot, made)]
+    moveit = [(it, robot) for robot in plan.robots for it in _moveit_of_arm(plan, robot, made)]
     planning = joined_moveit(it for it, _ in moveit)
     robot_of = {it.file: robot for it, robot in moveit}
     for file, what in planning.notes:
@@ -248,10 +252,12 @@ def cell_commands(plan: FleetPlan) -> Iterator[str]:
         yield f"\n## {cell.name}\n\nOne move_group for all arms.\n\n```sh\n{line}\n```\n"
 
 
-def _moveit(
+def _moveit_of_arm(
     plan: FleetPlan, robot: RewrittenRobot, made: Mapping[str, bytes]
 ) -> Iterator[PartMoveit]:
     """Yield an arm's MoveIt files as a move_group for all needs them; servo runs for each arm."""
+    from multibot_rewrite.related_files.joined import PartMoveit
+
     for it in robot.spec.related_files.get("moveit", ()):
         path = path_for(robot, it)
         document = read_yaml(made[path], path)
@@ -284,8 +290,8 @@ _GROUP = "group"
 def cell_window(
     document: YamlText, cell: Cell, first: RewrittenRobot, world: str
 ) -> RvizText | None:
-    """Return the window, seen from ``world``; it starts with the cell's first group, or with that
-    of the ``first`` arm. None for a config without planning groups; raises as ``read_config``."""
+    """Return the window of a cell in ``world``; None for a config without planning groups."""
+    # It starts with the cell's first group, or with that of the ``first`` arm.
     config = read_config(document)
     shown = (place for it in every(config.displays) for place in it.places)
     groups = [it for it in shown if it.kind == _GROUP]

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file that a build writes with the source line of each line, and what each step of a build yields:
-files, findings, and files to check."""
+"""A file that a build writes, with the source line of each line."""
 
 import os
 from collections.abc import Collection, Iterable, Iterator
@@ -60,9 +59,9 @@ def described_path(robot: RewrittenRobot, node: str) -> str:
 
 
 def path_for(robot: RewrittenRobot, source: str) -> str:
-    """Return where the robot's version of a source file goes: ``robot1/params.yaml``. Files of one
-    name go into folders named as theirs, as many as tell them apart: ``robot1/base/params.yaml``. A
-    vendor's launch files may want one in a place of its own."""
+    """Return where the robot's version of a source file goes: ``robot1/params.yaml``."""
+    # Files of one name go into folders, as many as tell them apart: ``robot1/base/params.yaml``. A
+    # vendor's launch files may want one in a place of its own.
     kinds = robot.spec.related_files
     name = name_among(source, (it for its in kinds.values() for it in its))
     kind = next((kind for kind, its in kinds.items() if source in its), "")
@@ -92,8 +91,7 @@ def name_among(source: str, every: Iterable[str]) -> str:
 
 
 def _shortest_own_end(path: str, alike: Collection[str]) -> str:
-    """Return the shortest end of a path below the folder of all, in whole steps, that no other one ends
-    with: where that folder is makes no difference."""
+    """Return the shortest end of a path, in whole steps, that no other one ends with."""
     steps = os.path.relpath(path, os.path.commonpath(map(os.path.dirname, alike))).split(os.sep)
     ends = (os.sep.join(steps[at:]) for at in range(len(steps) - 1, -1, -1))
     found = (end for end in ends if sum(it.endswith(f"/{end}") for it in alike) == 1)
@@ -136,14 +134,14 @@ def yaml_of(path: str) -> YamlText:
 
 def line_in_source(file: OutputFile, line: int) -> tuple[str, int]:
     """Return the source of a file, and its line that a line of the file was made from."""
-    for start, end, first, last in _changes(file):
+    for start, end, first, last in _changed_ranges(file):
         if first < line <= last:
             return file.sources[0], max(1, min(start + line - first, end))
     return file.sources[0], 1
 
 
 @lru_cache(maxsize=16)
-def _changes(file: OutputFile) -> tuple[tuple[int, int, int, int], ...]:
+def _changed_ranges(file: OutputFile) -> tuple[tuple[int, int, int, int], ...]:
     """Return the changed ranges: lines of the source, and lines of the file made from them."""
     from difflib import SequenceMatcher
 

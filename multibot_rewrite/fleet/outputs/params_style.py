@@ -84,7 +84,7 @@ def in_style(plan: FleetPlan, files: Sequence[OutputFile]) -> FilesAndFindings:
 
 
 def _with_zones(it: OutputFile, spec: RobotSpec, file: FleetFile) -> OutputFile:
-    """Return the file with true or false for the zone words, as nav2_bringup's launch files do."""
+    """Return the file with true or false for zones, as nav2_bringup's launch files fill it."""
     if not any(word.encode() in it.data for word in ZONES):
         return it
     runs = {node.name for node in nodes_of_sets(spec, file)}
@@ -95,7 +95,7 @@ def _with_zones(it: OutputFile, spec: RobotSpec, file: FleetFile) -> OutputFile:
 
 
 def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
-    """Yield the absolute names of a robot's nodes that neither a rule nor a parameter changes."""
+    """Yield a finding on absolute names of Nav2 that no rule and no parameter changes."""
     first = plan.robots[0].spec.namespace
     started = {
         it.name for node_set in _NODE_SETS for it in load_node_set(node_set, plan.file.distro)

@@ -54,13 +54,12 @@ _KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA
 
 
 def related_files(plan: FleetPlan) -> FilesToCheck:
-    """Yield every related file that is one text with slots for the robot. Raises InputError for a
-    file that cannot be read or rewritten."""
+    """Yield the related files of all robots; raises InputError if one cannot be rewritten."""
     groups = list(group_robots(plan))
     for key in _KINDS:
         for group in groups:
             for path in group.related_files.get(key, ()):
-                yield from _files(plan, group, key, path)
+                yield from _files_for_robots(plan, group, key, path)
     for group in groups:
         yield from _own_options(plan, group)
     yield from launched_values(plan).findings
@@ -70,8 +69,7 @@ def related_files(plan: FleetPlan) -> FilesToCheck:
 
 
 class LaunchedValues(NamedTuple):
-    """What launch files themselves set for nodes: by robot and node, with the names of that robot; and
-    what is wrong with it."""
+    """What launch files set for nodes, by robot and node, and what is wrong with it."""
 
     values: Mapping[tuple[str, str], Mapping[str, Any]]
     findings: tuple[Finding, ...]
@@ -91,7 +89,7 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
     for group in group_robots(plan):
         evidence = plan.evidence_of(group.robots[0])
         once = {it.name for it in evidence.nodes if it.shared}
-        known, bare = _known(plan, group)
+        known, bare = _known_nodes(plan, group)
         facts = facts_by_name(group.facts, plan.file.distro)
         job = ParamsJob(read_yaml(b"", ""), group.context, known, facts, (), bare)
         given: dict[str, set[str]] = defaultdict(set)
@@ -106,7 +104,7 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
             body = {it.kind or name: {"ros__parameters": dict(it.values)}}
             data = yaml.dump(body, None, dumper, sort_keys=False, allow_unicode=True).encode()
             made = rewrite_values(job._replace(document=read_yaml(data, it.place.file)))
-            lacking = _lacking(group, name, it, job.known, given[name])
+            lacking = _missing_names(group, name, it, job.known, given[name])
             if not (it.values or lacking):
                 continue
             file, line, *_ = it.place
@@ -116,19 +114,18 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
                 own = spec.namespace, spec.tag, numbers[spec.name]
                 text = fill_template(made.template, *own)
                 values[spec.name, name] = {
-                    **_section(text, it.place.file),
-                    **_section(
+                    **_parameters_in(text, it.place.file),
+                    **_parameters_in(
                         fill_template(make_template("", [Splice(0, 0, lacking)]), *own), name
                     ),
                 }
     return LaunchedValues(values, tuple(findings))
 
 
-def _lacking(
+def _missing_names(
     group: RobotGroup, name: str, it: HandedOn, known: KnownNodes, given: Iterable[str]
 ) -> str:
-    """Return as parameters with slots the default names of a launched node that robots would share;
-    empty for a node of a node set, which has a section. ``given`` are those that its files set."""
+    """Return default names of a launched node that robots would share, as parameters with slots."""
     first, *_ = (*group.related_files.get("params", ()), "")
     has_section = name in group.context.nodes and (not first or os.path.realpath(first) in it.files)
     if it.kind not in known.nodes or has_section or it.kind == STATIC:
@@ -137,7 +134,7 @@ def _lacking(
     return "".join(f"{line.path}: {line.value}\n" for line in lines)
 
 
-def _section(text: str, file: str) -> Mapping[str, Any]:
+def _parameters_in(text: str, file: str) -> Mapping[str, Any]:
     """Return the parameters of the one section of a text."""
     found: Any = load_yaml(text, file) if text else {}
     for section in found.values():
@@ -145,22 +142,22 @@ def _section(text: str, file: str) -> Mapping[str, Any]:
     return dict(found)
 
 
-def _known(plan: FleetPlan, group: RobotGroup) -> tuple[KnownNodes, frozenset[str]]:
+def _known_nodes(plan: FleetPlan, group: RobotGroup) -> tuple[KnownNodes, frozenset[str]]:
     """Return what is known of nodes with the frames that they send, and those that prefix frames."""
     evidence = plan.evidence_of(group.robots[0])
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
-    bare = _at_run_time(plan.fleet.naming, evidence.given, known)
+    bare = _prefixing_nodes(plan.fleet.naming, evidence.given, known)
     links = group.context.names.declared["link"]
     sent = {it for node in evidence.nodes for it in children_of(node)}
     # A frame may be a link with a typing mistake.
     return known._replace(sent=known.sent | {it for it in sent if not meant_name(it, links)}), bare
 
 
-def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesToCheck:
+def _files_for_robots(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesToCheck:
     """Yield a file for each robot of a group, and what is found in it."""
     spec = group.robots[0].spec
     if _KINDS[key] == PARAMS:
-        made = _params(plan, group, path)
+        made = _rewritten_params(plan, group, path)
     else:
         text_made = text_of(spec, path)
         made = made_for_any(_KINDS[key], text_made, path, group.context, group.facts)
@@ -187,7 +184,7 @@ def _own_defaults(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
     """Yield for each robot without a parameter file the one that its nodes need."""
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     given = plan.evidence_of(group.robots[0]).given
-    text = all_sections(group.context, known, _at_run_time(plan.fleet.naming, given, known))
+    text = all_sections(group.context, known, _prefixing_nodes(plan.fleet.naming, given, known))
     template = make_template("", [Splice(0, 0, text)])
     for robot in group.robots if text else ():
         made = fill_template(template, robot.spec.namespace, robot.spec.tag)
@@ -207,11 +204,11 @@ def _own_options(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
                 yield OutputFile(path_for(robot, OPTIONS), own.encode())
 
 
-def _params(plan: FleetPlan, group: RobotGroup, path: str) -> RelatedFile:
+def _rewritten_params(plan: FleetPlan, group: RobotGroup, path: str) -> RelatedFile:
     """Return a ROS parameter file; what the robot's other parameter files set is not inserted in it."""
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
-    known, bare = _known(plan, group)
+    known, bare = _known_nodes(plan, group)
     own = group.robots[0].spec.words if len(group.robots) == 1 else ()
     return rewrite_params(
         read[path],
@@ -226,9 +223,8 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> RelatedFile:
     )
 
 
-def _at_run_time(naming: Naming, given: Iterable[Run], known: KnownNodes) -> frozenset[str]:
-    """Return the nodes that put the robot's name before their frames, by their files and launch
-    files; a rewrite leaves those frames unchanged."""
+def _prefixing_nodes(naming: Naming, given: Iterable[Run], known: KnownNodes) -> frozenset[str]:
+    """Return nodes that put the robot's name before frames; a rewrite leaves those unchanged."""
     if not naming.layout.at_run_time:
         return frozenset()
     found = set()

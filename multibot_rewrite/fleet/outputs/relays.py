@@ -43,7 +43,7 @@ def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
     if not file.relayed:
         return []
     copied = naming.layout.frames
-    return [*(_relays_to_tf(robot, naming) if copied else _bridge(robot, naming, file.world))]
+    return [*(_relays_to_tf(robot, naming) if copied else _bridges(robot, naming, file.world))]
 
 
 def _relays_to_tf(robot: str, naming: Naming) -> Iterator[Relay]:
@@ -53,17 +53,18 @@ def _relays_to_tf(robot: str, naming: Naming) -> Iterator[Relay]:
         target = target_of(f"/{topic}", TOPIC, robot, naming)
         source = f"{above}/{target.lstrip('/')}"
         told = {"input_topic": source, "output_topic": f"/{topic}"}
-        run = _run(robot, node, naming, (source,), (f"/{topic}",), _FIXED)
+        run = _relay_run(robot, node, naming, (source,), (f"/{topic}",), _FIXED)
         yield Relay(run, Start(*_RELAY, run.namespace, run.name, (told,)))
 
 
-def _bridge(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
+def _bridges(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
+    """Yield the relays of tf to ``/tf``, and of the world frame."""
     reads, writes = (tuple(f"{above}/{it}" for it in TF_TOPICS) for above in (f"/{robot}", ""))
-    run = _run(robot, BRIDGE, naming, reads, writes, _IN_CODE)
+    run = _relay_run(robot, BRIDGE, naming, reads, writes, _IN_CODE)
     yield Relay(run, Start(BRIDGE, BRIDGE, run.namespace, run.name, needs=BRIDGE))
     if frame := world or world_frame(naming):
         words = ("--frame-id", frame, "--child-frame-id", f"{robot}/{frame}")
-        run = _run(robot, _WORLD, naming, (), writes[1:], _IN_CODE)
+        run = _relay_run(robot, _WORLD, naming, (), writes[1:], _IN_CODE)
         start = Start(*_STATIC, run.namespace, run.name, arguments=words, needs=BRIDGE)
         yield Relay(run, start)
 
@@ -74,7 +75,7 @@ def not_bridged(robot: str) -> str:
     return f"{why}: install it, or take layout both"
 
 
-def _run(
+def _relay_run(
     robot: str, node: str, naming: Naming, reads: Iterable[str], writes: Iterable[str], why: str
 ) -> Run:
     """Return a node with topics of these full names; ``why`` no remap rule changes them."""

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The RViz configs of a fleet: what each window shows, and the command that opens it. Those that follow
-from a plan, for a fleet that has none of its own: each robot's description, its sensors, maps and
-paths in the robot's colour, and tools for its goal and pose.
+"""The RViz configs of a fleet, its own or made from the plan, and what opens the windows.
 
-Sources: classes and properties ``rviz.yaml``; a map is latched (nav2_map_server map_server.cpp), so is
-a description (robot_state_publisher.cpp); drivers send scans and clouds best effort (REP 2003)."""
+Sources: classes and properties ``rviz.yaml``; a map is latched (nav2_map_server map_server.cpp),
+so is a description (robot_state_publisher.cpp); drivers send scans and clouds best effort (REP
+2003)."""
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
@@ -62,29 +61,29 @@ _TOOLS = {"SetInitialPose": "initialpose", "SetGoal": "goal_pose"}
 
 
 def windows_of_plan(plan: System, relayed: bool) -> tuple[RvizText, ...]:
-    """Return a config for each robot, with its namespace and tf topic, if each sends its transforms on
-    its own topic and they are not ``relayed`` to ``/tf``; otherwise a single one for all."""
+    """Return a config for each robot if each has its own tf topic, otherwise one for all."""
     layout = next(it for it in LAYOUTS if plan.layout in (it.name, it.short))
     robots, shared = shown_by_robot(plan)
-    lines = [_group(it, at, layout.at_run_time) for at, it in enumerate(robots)]
+    lines = [_robot_displays(it, at, layout.at_run_time) for at, it in enumerate(robots)]
     if len({it.tf_topic for it in plan.robots}) == 1 or (relayed and layout.frames):
-        own = [*_displays(shared, ""), *lines]
-        return (RvizText("", _text(own, robots, world_of_plan(plan))),)
+        own = [*_displays_of(shared, ""), *lines]
+        return (RvizText("", _config_text(own, robots, world_of_plan(plan))),)
     made = []
     for it, group in zip(robots, lines, strict=True):
         # The frame that the robot's frames hang on.
         own_frames = {*it.robot.frames, *it.robot.other_frames}
         parents = (edge.parent for edge in plan.edges if edge.child in own_frames)
         root = next(parents, next(iter(it.robot.frames), ""))
-        text = _text([*_displays(shared, ""), group], [it], root)
+        text = _config_text([*_displays_of(shared, ""), group], [it], root)
         remaps = _tf_topics(it.robot, layout.namespaced)
         made.append(RvizText(it.robot.name, text, remaps=remaps))
     return tuple(made)
 
 
 def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
-    """Return the rules for both topics of tf. The robot's name may have ``tf`` in it, or be it: the
-    topic is the last part of a name in a namespace, else the first one of that name."""
+    """Return the rules for both topics of tf."""
+    # The robot's name may have ``tf`` in it, or be it: the topic is the last part of a name in a
+    # namespace, else the first one of that name.
     tf, static = TF_TOPICS
     parts = robot.tf_topic.split("/")
     places = [at for at, it in enumerate(parts) if it == tf]
@@ -94,26 +93,26 @@ def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
     return (f"/{tf}", robot.tf_topic), (f"/{static}", other)
 
 
-def _group(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
+def _robot_displays(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
     """Return the displays of a robot, in its colour."""
     robot = shown.robot
     model = {
-        **_display("RobotModel", "RobotModel", {**_LATCHED, "Value": shown.description}, True),
+        **_of_topic("RobotModel", "RobotModel", {**_LATCHED, "Value": shown.description}, True),
         "Description Source": "Topic",
         "TF Prefix": (robot.tag or robot.name) if prefixed else "",
     }
     model["Description Topic"] = model.pop("Topic")
     colour = "; ".join(map(str, palette(at)))
-    displays = [model, *_displays(shown, colour)]
+    displays = [model, *_displays_of(shown, colour)]
     return {"Class": "rviz_common/Group", "Name": robot.name, "Enabled": True, "Displays": displays}
 
 
-def _displays(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
+def _displays_of(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
     kinds = rviz_data()["shown"]
     for topic in sorted(shown.of_type(kinds)):
         kind = kinds[shown.sent[topic]]
         enabled = kind != "Map" or shown.is_called(topic, _MAP)
-        made = _display(kind, topic, {**_QOS.get(kind, {}), "Value": topic}, enabled)
+        made = _of_topic(kind, topic, {**_QOS.get(kind, {}), "Value": topic}, enabled)
         if colour and kind in _COLOURED:
             made |= {"Color": colour}
         if colour and kind in _FLAT:
@@ -121,12 +120,13 @@ def _displays(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
         yield made
 
 
-def _display(kind: str, name: str, topic: dict[str, str], enabled: bool) -> dict[str, Any]:
+def _of_topic(kind: str, name: str, topic: dict[str, str], enabled: bool) -> dict[str, Any]:
+    """Return the display of a topic."""
     kind = f"rviz_default_plugins/{kind}"
     return {"Class": kind, "Name": name, "Enabled": enabled, "Topic": topic}
 
 
-def _text(displays: Sequence[dict[str, Any]], robots: Sequence[Shown], frame: str) -> str:
+def _config_text(displays: Sequence[dict[str, Any]], robots: Sequence[Shown], frame: str) -> str:
     clicked = [
         {"Class": f"rviz_default_plugins/{kind}", "Topic": {"Value": topic}}
         for it in robots
@@ -145,23 +145,23 @@ def _text(displays: Sequence[dict[str, Any]], robots: Sequence[Shown], frame: st
             "Views": {"Current": {"Class": "rviz_default_plugins/Orbit", "Distance": 10}},
         },
     }
-    return "".join(f"{line}\n" for line in _lines(config))
+    return "".join(f"{line}\n" for line in _yaml_lines(config))
 
 
 def _plain_display(kind: str) -> dict[str, Any]:
     return {"Class": f"rviz_default_plugins/{kind}", "Name": kind, "Enabled": True}
 
 
-def _lines(value: Any) -> Iterator[str]:
+def _yaml_lines(value: Any) -> Iterator[str]:
     """Yield a mapping as lines of YAML. PyYAML takes longer than the rest of a build."""
     for key, there in value.items():
         if isinstance(there, dict):
             yield f"{key}:"
-            yield from (f"  {it}" for it in _lines(there))
+            yield from (f"  {it}" for it in _yaml_lines(there))
         elif isinstance(there, list):
             yield f"{key}:" if there else f"{key}: []"
             for one in there:
-                first, *rest = _lines(one)
+                first, *rest = _yaml_lines(one)
                 yield from (f"  - {first}", *(f"    {it}" for it in rest))
         else:
             text = str(there).lower() if isinstance(there, bool | int) else quoted(there)
@@ -191,10 +191,10 @@ def bridged_window(
         bridged.append(it._replace(names=names, tf_prefix=own))
     texts, _ = rewrite_rviz(document, bridged, world=world)
     shown = next(it for it in texts if not it.robot)
-    return shown, tuple(_bare_headers(document))
+    return shown, tuple(_empty_displays(document))
 
 
-def _bare_headers(document: YamlText) -> Iterator[Finding]:
+def _empty_displays(document: YamlText) -> Iterator[Finding]:
     shown = ((it, {at.kind for at in it.places}) for it in leaves(read_config(document).displays))
     found = [it for it, kinds in shown if TOPIC in kinds and TF_PREFIX not in kinds]
     if found:
@@ -213,8 +213,7 @@ USUAL = "/fleet.rviz"
 
 
 class RvizOutput(NamedTuple):
-    """The results of one RViz config, whose path is ``source``; ``findings`` are about it, or have it
-    checked, ``name`` is that of a window for several robots."""
+    """The windows of the RViz config ``source``; ``name`` is that for several robots."""
 
     source: str
     windows: tuple[RvizText, ...]
@@ -227,8 +226,7 @@ class RvizOutput(NamedTuple):
 
 
 def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOutput]:
-    """Yield the windows by the config they are made from; ``each`` is every robot as its own fleet.
-    Raises InputError for a config that cannot be read or rewritten."""
+    """Yield the windows of each config; raises InputError if one cannot be rewritten."""
     robots_of = lists_by_key(
         (path, it) for it in plan.robots for path in it.spec.related_files.get("rviz", ())
     )
@@ -259,8 +257,7 @@ def usual_windows(plan: FleetPlan, planned: System) -> list[RvizOutput]:
 
 
 def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:
-    """Return the windows of a fleet with the names of their files, or with ``each`` one for each
-    robot. Raises as ``rviz_outputs``."""
+    """Return windows with file names; ``each``: one for each robot. Raises as ``rviz_outputs``."""
     apart = list(split_per_robot(plan))
     made = [rviz_outputs(one, [one]) for one in apart] if each else [rviz_outputs(plan, apart)]
     found = (it for outputs in made for it in outputs)
@@ -298,8 +295,8 @@ def window_start(window: RvizText, file: str, parameters: str = "") -> Start:
 
 
 def opened_of(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[RvizOutput]:
-    """Return the windows that open by themselves. A launch file that starts RViz opens one window for a
-    robot: where the config has windows for robots these are it, and the one for all is left out."""
+    """Return the windows that open by themselves."""
+    # A launch file that starts RViz opens one for a robot: so the one for all is left out.
     if not any(it.spec.launch for it in plan.robots):
         return [*configs]
     of_robots = ((it, tuple(one for one in it.windows if one.robot)) for it in configs)
@@ -307,8 +304,7 @@ def opened_of(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[RvizOutput
 
 
 def why_for_each(path: str, layout: str) -> str:
-    """Return why each robot has a window of its own of a config; empty where one shows all robots, or
-    the config cannot be read."""
+    """Return why each robot has a window of its own; empty if one window shows all robots."""
     chosen = find_layout(layout)
     if chosen.tf_per_robot:
         return "each robot has its own tf topic, and one rviz2 reads one"

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a vendor's launch files want besides the robot's own outputs: the commands that take them, and
-files that are copied with the robot's namespace."""
+"""What a vendor's launch files want besides the robot's outputs: commands, copied files."""
 
 from __future__ import annotations
 
@@ -52,8 +51,7 @@ def taken_as_they_are(plan: FleetPlan) -> set[str]:
 
 
 def copied(plan: FleetPlan) -> Iterator[OutputFile]:
-    """Yield the vendor's files next to descriptions, with each robot's namespace. Raises InputError
-    for one that cannot be read or has no namespace."""
+    """Yield vendors' files with each robot's namespace; raises InputError if one has none."""
     wanted = shapes()[plan.file.shape].namespace_in if plan.file.shape else {}
     for robot in plan.robots:
         for name, keys in wanted.items():

@@ -59,8 +59,7 @@ class Spawn(NamedTuple):
 
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
-    """Return how each robot is spawned, and findings: only some of its plugins have a namespace, a
-    plugin looks for the robot by another name or is of ROS 1, it has no mass."""
+    """Return how each robot is spawned, and findings on its plugins and mass."""
     made: list[Spawn] = []
     findings: list[Finding] = []
     for robot in plan.robots:
@@ -77,14 +76,13 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
             message = f"{some}, but not {', '.join(bare)}"
             findings.append(at_robot(PARTLY_NAMESPACED, robot, message, hint))
         findings += _other_models(robot)
-        findings += _of_ros_1(robot)
+        findings += _ros_1_plugins(robot)
         findings += without_mass(robot)
     return tuple(made), tuple(findings)
 
 
 def in_folder(plan: FleetPlan) -> tuple[Spawn, ...]:
-    """Return how robots are spawned from a built folder: from the file of a description that no
-    planned node publishes, as that of an SDF."""
+    """Return how robots are spawned from a built folder: by file if no node publishes it."""
     sent = {name for _, end, name in plan.fleet.table.ends if end.role == PUBLISHES}
     made, _ = spawns(plan)
     found = []
@@ -117,9 +115,8 @@ def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
 
 
 def spawner(it: Spawn, classic: bool) -> Start:
-    """Return what spawns a robot, in Gazebo Classic or in gz-sim. That of gz-sim uses gflags, where
-    ``-allow_renaming false`` means true: a boolean flag takes its value only after an equals
-    sign."""
+    """Return what spawns a robot in Gazebo Classic or gz-sim."""
+    # gflags reads ``-allow_renaming false`` as true: a flag takes its value after an equals sign.
     program, named = (CLASSIC, "-entity") if classic else (GZ, "-name")
     last = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
     more = last if classic else ["-allow_renaming=false"]
@@ -174,7 +171,7 @@ MODEL_OF_OTHER_NAME = declare("MF707", "model-of-other-name", WARNING, formats=(
 PLUGIN_OF_ROS_1 = declare("MF713", "plugin-of-ros-1", WARNING, formats=("fleet",))
 
 
-def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
+def _ros_1_plugins(robot: RewrittenRobot) -> Iterator[Finding]:
     """Yield a finding for each plugin without a definition for ROS 2."""
     of_ros_1 = (it for it in robot.member.inventory.served if it[1].type == "plugin")
     names = (host.get("filename") or it.names[0] for host, it in of_ros_1 if it.ros == "1")

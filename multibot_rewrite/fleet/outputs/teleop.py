@@ -45,27 +45,27 @@ def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
     found = []
     for robot in plan.robots:
         # Something reads velocity commands, or sends them to a base that is not in the plan.
-        own = _ends(plan, robot)
-        sends = any(end.role == PUBLISHES and name == _cmd_vel(robot) for _, end, name in own)
-        if sends or _obeyed([*_commands(plan, robot)]):
+        own = _robot_ends(plan, robot)
+        sends = any(end.role == PUBLISHES and name == _usual_topic(robot) for _, end, name in own)
+        if sends or _obeyed_topics([*_command_ends(plan, robot)]):
             found.append(teleop(plan, robot))
     return tuple(found)
 
 
-def _ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, Endpoint, str]]:
+def _robot_ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, Endpoint, str]]:
     runs = (it for it in plan.fleet.table.runs if it.robot == robot.spec.namespace)
     yield from ((run.full_name, end, name) for run in runs for end, name in run.names)
 
 
-def _cmd_vel(robot: RewrittenRobot) -> str:
+def _usual_topic(robot: RewrittenRobot) -> str:
     return robot_topic(robot.topics, f"/{COMMAND}")
 
 
 def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
-    """Return how to drive a robot: by its ``cmd_vel`` if a node obeys it, else the first topic that
-    one obeys; if a mux, a smoother or a monitor sends there, by an input of that."""
-    ends = [*_commands(plan, robot)]
-    usual, obeyed = _cmd_vel(robot), _obeyed(ends)
+    """Return how to drive a robot: by a ``cmd_vel`` that is obeyed, another topic, or an input."""
+    # A mux, a smoother or a monitor that sends there is driven by an input of it.
+    ends = [*_command_ends(plan, robot)]
+    usual, obeyed = _usual_topic(robot), _obeyed_topics(ends)
     topic = entry_of(usual if usual in obeyed or not obeyed else obeyed[0], ends)
     types = {it.type for it in ends if it.role == SUBSCRIBES and it.topic == topic}
     if STAMPED not in types or PLAIN in types:
@@ -75,9 +75,9 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
     return Teleop(robot.spec.namespace, topic, True, root)
 
 
-def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
+def _command_ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
     """Yield a robot's ends with velocities: those of nodes, then of bridges, which have no name."""
-    for node, end, name in _ends(plan, robot):
+    for node, end, name in _robot_ends(plan, robot):
         if end.kind == TOPIC and end.type in (PLAIN, STAMPED) and not end.when:
             yield CommandEnd(node, end.role, name, end.type, end.parameter, end.name)
     own = bridged_commands(robot.member, robot.spec).items()
@@ -92,9 +92,8 @@ def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
             yield CommandEnd("", SUBSCRIBES, topic, type_)
 
 
-def _obeyed(ends: Sequence[CommandEnd]) -> list[str]:
-    """Return the topics of commands that a drive obeys, by their usual names or as bridges have them;
-    where none does, the inputs of what is before one."""
+def _obeyed_topics(ends: Sequence[CommandEnd]) -> list[str]:
+    """Return the topics of commands that a drive obeys; if none, inputs of what is before one."""
     relays = relays_of(ends)
     heard = [it for it in ends if it.role == SUBSCRIBES]
     usual = [it for it in heard if not it.node or it.name.rpartition("/")[2] in COMMANDS]

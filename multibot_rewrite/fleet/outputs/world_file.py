@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``world.sdf``: a world of the user's without the robot that it has, since the launch file spawns
-each of the fleet (what names that robot names those of the fleet); or an empty one for gz-sim that
-runs the sensors of the robots.
+"""``world.sdf``: the user's world without its robot, or an empty one that runs sensors.
 
-Gazebo's own empty.sdf has physics, user commands, the scene and contacts; a lidar, a camera or an IMU
-sends nothing in it. Source: gz-sim gz-sim8 examples/worlds/empty.sdf, sensors_demo.sdf, and the names
-in src/systems (ign-gazebo6 of Humble calls the libraries ignition-gazebo-...).
-
-A block of a plugin that names it (``<wind_obj>`` of VRX, ``<performer>`` of gz-sim) is there for each
-robot; a parameter of the plugin itself can name one robot only, and names the first.
-Sources: gz-sim examples/worlds/levels.sdf; osrf/vrx vrx_gz/src/USVWind.cc, ScoringPlugin.cc."""
+What names that robot names those of the fleet, which the launch file spawns. Gazebo's own
+empty.sdf has physics, user commands, the scene and contacts; a lidar, a camera or an IMU sends
+nothing in it. Source: gz-sim gz-sim8 examples/worlds/empty.sdf, sensors_demo.sdf, and the names
+in src/systems (ign-gazebo6 of Humble calls the libraries ignition-gazebo-...). A block of a
+plugin that names it (``<wind_obj>`` of VRX, ``<performer>`` of gz-sim) is there for each robot;
+a parameter of the plugin itself can name one robot only, and names the first. Sources: gz-sim
+examples/worlds/levels.sdf; osrf/vrx vrx_gz/src/USVWind.cc, ScoringPlugin.cc."""
 
 import os
 import re
@@ -62,8 +60,7 @@ class _Text(NamedTuple):
 def own_world(
     path: str, robots: Sequence[RewrittenRobot], systems: str, file: str, line: int
 ) -> tuple[bytes, list[Finding]]:
-    """Return the world for these robots with the ``systems`` that it lacks, and the findings for
-    this ``line`` of the fleet file. Raises InputError for a file that is no world."""
+    """Return the world with these robots and ``systems``, and findings; raises InputError."""
     document = read_document(read_file(path), path)
     world = document.root.find("world")
     if world is None:
@@ -73,21 +70,23 @@ def own_world(
     edits = [Edit(at, at, b"\n" + systems.rstrip("\n").encode(), None)] if systems else []
     edits += _own_paths(it)
     findings: list[Finding] = []
-    for kind in _kinds(robots):
+    for kind in _robots_by_description(robots):
         gone = []
         for one in world.iterchildren("include", "model"):
             uri = text_at(one, "uri")
             found = model_file(uri, os.path.dirname(os.path.abspath(path))) if uri else ""
             is_of_file = bool(found) and os.path.realpath(found) in kind.files
-            gone += [one] if is_of_file or _name(one) in kind.names else []
-        names = kind.names | {name for one in gone if (name := _name(one))}
+            gone += [one] if is_of_file or _model_name(one) in kind.names else []
+        names = kind.names | {name for one in gone if (name := _model_name(one))}
         for one in gone:
             edits.append(Edit(*it.spans.of(one), b"", None))
-            findings.append(_finding(it, one, f"the world's {_name(one)!r} is left out", NOTE))
+            findings.append(
+                _world_finding(it, one, f"the world's {_model_name(one)!r} is left out", NOTE)
+            )
         inside = {below for one in gone for below in one.iter()}
         for plugin in world.iter("plugin"):
             if plugin not in inside:
-                for edit in _in_plugin(it, plugin, kind._replace(names=names)):
+                for edit in _plugin_edits(it, plugin, kind._replace(names=names)):
                     (edits if isinstance(edit, Edit) else findings).append(edit)  # type: ignore[arg-type]
     # In order, without those inside of another one.
     apart: list[Edit] = []
@@ -118,7 +117,7 @@ def _world_topics(world: str, systems: Sequence[str]) -> dict[str, str]:
     }
 
 
-def _kinds(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
+def _robots_by_description(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
     found = lists_by_key((it.spec.simulated or it.spec.description, it) for it in robots)
     for alike in found.values():
         root = alike[0].member.source.root
@@ -132,22 +131,22 @@ def _kinds(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
         yield _Kind(alike, frozenset(names), frozenset(files))
 
 
-def _name(one: _Element) -> str:
+def _model_name(one: _Element) -> str:
     return one.get("name") or text_at(one, "name") or text_at(one, "uri").rpartition("/")[2]
 
 
-def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:
+def _plugin_edits(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:
     for block in (one for one in plugin.iterchildren("*") if len(one)):
         texts_in = (text_of(one) for one in block.iter("*") if not len(one))
-        if not any(_new(text, kind.robots[0], kind.names, False) for text in texts_in):
+        if not any(_new_value(text, kind.robots[0], kind.names, False) for text in texts_in):
             continue
         start, end = it.spans.of(block)
-        texts = [_block(it, block, kind, robot) for robot in kind.robots]
+        texts = [_block_for(it, block, kind, robot) for robot in kind.robots]
         yield Edit(start, end, b"\n".join(texts), None)
     leaves = [one for one in plugin.iterchildren("*") if not len(one)]
-    named = [one for one in leaves if _new(text_of(one), kind.robots[0], kind.names, False)]
+    named = [one for one in leaves if _new_value(text_of(one), kind.robots[0], kind.names, False)]
     for one in leaves:
-        new = _new(text_of(one), kind.robots[0], kind.names, bool(named))
+        new = _new_value(text_of(one), kind.robots[0], kind.names, bool(named))
         slot = text_slot(it.document.source, it.spans.start_of(one), text_of(one)) if new else None
         if slot:
             yield Edit(*slot, new.encode(), None)
@@ -155,17 +154,17 @@ def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Find
         who = plugin.get("name") or plugin.get("filename") or "plugin"
         first = kind.robots[0].spec.name
         message = f"{who} of the world names one robot in <{named[0].tag}>: now {first} alone"
-        yield _finding(it, named[0], message, WARNING)
+        yield _world_finding(it, named[0], message, WARNING)
 
 
-def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:
+def _block_for(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:
     """Return the block for one robot; its own name, if it has one, becomes the robot's."""
     source = it.document.source
     start, end = it.spans.of(block)
     edits = []
     for one in block.iter("*"):
         text = text_of(one) if not len(one) else ""
-        new = _new(text, robot, kind.names, True)
+        new = _new_value(text, robot, kind.names, True)
         slot = text_slot(source, it.spans.start_of(one), text) if new else None
         edits += [Edit(slot[0] - start, slot[1] - start, new.encode(), None)] if slot else []
     own = re.compile(rb"""\bname\s*=\s*["']([^"'<]*)""").search(
@@ -177,23 +176,24 @@ def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> by
     return b"".join(cut(source[start:end], sorted(edits)))
 
 
-def _new(value: str, robot: RewrittenRobot, names: frozenset[str], tied: bool) -> str:
-    """Return what a value becomes for a robot, empty if it does not name it; in what is ``tied`` to
-    the robot, links and joints become its own."""
+def _new_value(value: str, robot: RewrittenRobot, names: frozenset[str], tied: bool) -> str:
+    """Return what a value becomes for a robot; empty if it does not name it."""
+    # In what is ``tied`` to the robot, links and joints become its own.
     model, scope, rest = value.partition(_SCOPE)
     if value in names:
         return robot.spec.model
     if scope and model in names:
-        return _SCOPE.join((robot.spec.model, *(_part(it, robot) for it in rest.split(_SCOPE))))
+        return _SCOPE.join((robot.spec.model, *(_new_part(it, robot) for it in rest.split(_SCOPE))))
     made = value
     for name in names:
         made = re.sub(_BELOW_MODEL.format(re.escape(name)), rf"\g<1>{robot.spec.model}", made)
     if made == value and tied:
-        made = _part(value, robot)
+        made = _new_part(value, robot)
     return made if made != value else ""
 
 
-def _part(value: str, robot: RewrittenRobot) -> str:
+def _new_part(value: str, robot: RewrittenRobot) -> str:
+    """Return the robot's name of a link, joint or sensor; any other text as it is."""
     for kind in ("link", "joint", "sensor"):
         if is_declared(robot.names, kind, value):
             return spell(robot.names, kind, value)
@@ -212,7 +212,7 @@ def _own_paths(it: _Text) -> Iterator[Edit]:
                 yield Edit(*slot, f"file://{path}".encode(), None)
 
 
-def _finding(it: _Text, one: _Element, message: str, level: str) -> Finding:
+def _world_finding(it: _Text, one: _Element, message: str, level: str) -> Finding:
     place = f"{it.document.file}:{one.sourceline}"
     hint = f"{place}; robots are spawned by the launch file" if level == NOTE else f"see {place}"
     return WORLD_ROBOT.finding(message, hint, level=level, file=it.file, line=it.line)
@@ -230,12 +230,12 @@ _ALWAYS = {
 
 
 def world_file(plan: FleetPlan) -> FilesAndFindings:
-    """Yield the fleet file's world with what the robots need; otherwise an empty one, if a gz-sim
-    robot's sensor needs more than Gazebo's own. Raises InputError for a file that is no world."""
+    """Yield the user's world for the robots, or an empty one if a sensor needs it."""
+    # Raises InputError for a file that is no world.
     kind = "ignition-gazebo" if has_release(OLD_NAMES, plan.file.distro) else "gz-sim"
     robots = [it for it in plan.robots if is_simulated(it) and not it.is_classic]
-    usual = {library: _system(kind, library, name) for library, name in _ALWAYS.items()}
-    ours = _needed(robots, kind)
+    usual = {library: _system_xml(kind, library, name) for library, name in _ALWAYS.items()}
+    ours = _sensor_systems(robots, kind)
     given = plan.file.simulator_world
     if given:
         simulated = [it for it in plan.robots if is_simulated(it)]
@@ -263,7 +263,7 @@ def world_file(plan: FleetPlan) -> FilesAndFindings:
         yield OutputFile(FILE, empty.encode())
 
 
-def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
+def _sensor_systems(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
     """Return the XML of the systems that sensors and files of these robots need, by library.
 
     ``kind`` is what plugins are called after: gz-sim or ignition-gazebo."""
@@ -275,10 +275,10 @@ def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
         library.removeprefix("gz-sim-").removesuffix("-system"): f"    {text}\n"
         for library, text in found
     }
-    return {**{it: _system(kind, it, name) for it, name in needed.items()}, **theirs}
+    return {**{it: _system_xml(kind, it, name) for it, name in needed.items()}, **theirs}
 
 
-def _system(kind: str, library: str, name: str) -> str:
+def _system_xml(kind: str, library: str, name: str) -> str:
     head = f'    <plugin filename="{kind}-{library}-system" name="gz::sim::systems::{name}"'
     if name != "Sensors":
         return f"{head}/>\n"

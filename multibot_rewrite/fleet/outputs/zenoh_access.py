@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
 from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE, beyond
-from multibot_rewrite.producers.zenoh.tokens import SPACE
+from multibot_rewrite.producers.zenoh import SPACE
 from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import (
     ACTION,
@@ -40,8 +40,7 @@ _LIVELINESS = ["liveliness_token", "liveliness_query", "declare_liveliness_subsc
 
 
 class Rights(NamedTuple):
-    """The key expressions of a robot: its ``own``, and of the others those it sends and hears; the
-    domains that its nodes are in: with a bridge, that of all robots as well."""
+    """A robot's keys in Zenoh: its ``own``, others that it sends or hears; and its domains."""
 
     robot: str
     own: tuple[str, ...]
@@ -51,9 +50,9 @@ class Rights(NamedTuple):
 
 
 def rights(plan: System, domain: int) -> list[Rights]:
-    """Return what each robot of the plan may do in its domain, which is this one where the plan has
-    none. All below its namespace is its own, unless another robot has names there too. Of all other
-    names it has those that its nodes have in the plan."""
+    """Return what each robot may do in its domain, or in ``domain`` if the plan has none."""
+    # All below its namespace is its own, unless another robot has names there too. Of all other
+    # names it has those that its nodes have in the plan.
     numbers, bridged = domain_of(plan), beyond(plan)
     bridges = {it.name for it in plan.nodes if it.node_set == DOMAIN_BRIDGE}
     whole = plan
@@ -77,7 +76,7 @@ def rights(plan: System, domain: int) -> list[Rights]:
         if common and not any(name.startswith(space) for name in others):
             spaces[robot] = space
     found = [
-        _rights(
+        _rights_of(
             robot,
             nodes[robot.name],
             by_robot[robot.name],
@@ -101,19 +100,19 @@ def _with_bridge(
     }
     ends = [it for it in plan.ends if it.node in at]
     own = [f"{number}{name}/**" for name, number in at.items()]
-    sends = [_key(at[it.node], it) for it in ends if it.role == PUBLISHES]
+    sends = [_zenoh_key(at[it.node], it) for it in ends if it.role == PUBLISHES]
     sends += [f"{it}{name}/*/*" for it in {*at.values()} for name in SENT_BY_ANY_NODE]
-    hears = [_key(at[it.node], it) for it in ends if it.role != PUBLISHES]
+    hears = [_zenoh_key(at[it.node], it) for it in ends if it.role != PUBLISHES]
     return Rights(
         given.robot,
-        tuple(dict.fromkeys((*given.own, *_latched(own)))),
-        tuple(dict.fromkeys((*given.sends, *_latched(sorted(sends))))),
-        tuple(dict.fromkeys((*given.hears, *_latched(sorted(hears))))),
+        tuple(dict.fromkeys((*given.own, *_with_latched_keys(own)))),
+        tuple(dict.fromkeys((*given.sends, *_with_latched_keys(sorted(sends))))),
+        tuple(dict.fromkeys((*given.hears, *_with_latched_keys(sorted(hears))))),
         tuple(dict.fromkeys((*given.domains, *at.values()))),
     )
 
 
-def _rights(
+def _rights_of(
     robot: Robot,
     nodes: Iterable[str],
     ends: Iterable[End],
@@ -128,21 +127,25 @@ def _rights(
     hears: set[str] = set()
     for end in ends:
         if not (space and end.name.startswith(space)):
-            (sends if end.role in (PUBLISHES, SERVES) else hears).add(_key(domain, end))
+            (sends if end.role in (PUBLISHES, SERVES) else hears).add(_zenoh_key(domain, end))
     static = "/".join("tf_static" if word == "tf" else word for word in robot.tf_topic.split("/"))
     tf = () if space and robot.tf_topic.startswith(space) else (robot.tf_topic, static)
     sends |= {f"{domain}{name}/*/*" for name in (*SENT_BY_ANY_NODE, *tf)}
     hears |= {f"{domain}{name}/*/*" for name in (*OF_EVERY_NODE, *shared, *tf)}
-    keys = (_latched(own), _latched(sorted(sends)), _latched(sorted(hears)))
+    keys = (
+        _with_latched_keys(own),
+        _with_latched_keys(sorted(sends)),
+        _with_latched_keys(sorted(hears)),
+    )
     return Rights(robot.name, *keys, (domain,))
 
 
-def _key(domain: int, end: End) -> str:
+def _zenoh_key(domain: int, end: End) -> str:
     """Return the key of an end; an action has its services and topics below ``_action``."""
     return f"{domain}{end.name}/_action/*/*/*" if end.kind == ACTION else f"{domain}{end.name}/*/*"
 
 
-def _latched(keys: Sequence[str]) -> tuple[str, ...]:
+def _with_latched_keys(keys: Sequence[str]) -> tuple[str, ...]:
     return (*keys, *(f"{key}/@adv/**" for key in keys))
 
 
@@ -151,11 +154,11 @@ def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
     out, back = _FLOWS[side]
     name = given.robot
     found = [
-        _rule(f"{name}_own", [*_SENDS, *_ASKS], (OUT, IN), given.own),
-        _rule(f"{name}_sends", _SENDS, out, given.sends),
-        _rule(f"{name}_is_asked", _ASKS, back, given.sends),
-        _rule(f"{name}_hears", _SENDS, back, given.hears),
-        _rule(f"{name}_asks", _ASKS, out, given.hears),
+        _allow(f"{name}_own", [*_SENDS, *_ASKS], (OUT, IN), given.own),
+        _allow(f"{name}_sends", _SENDS, out, given.sends),
+        _allow(f"{name}_is_asked", _ASKS, back, given.sends),
+        _allow(f"{name}_hears", _SENDS, back, given.hears),
+        _allow(f"{name}_asks", _ASKS, out, given.hears),
     ]
     return [*found, graph_rule(f"{name}_graph", given.domains)]
 
@@ -163,16 +166,17 @@ def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
 def graph_rule(name: str, domains: Iterable[int]) -> Rule:
     """Return the rule that lets everybody see which nodes run, and what is latched."""
     keys = [key for it in domains for key in (f"{SPACE}/{it}/**", f"{it}/**/@adv/**")]
-    return _rule(name, _LIVELINESS, (OUT, IN), keys)
+    return _allow(name, _LIVELINESS, (OUT, IN), keys)
 
 
 def all_rule(name: str, domains: Iterable[int]) -> Rule:
     """Return the rule for an operator of all robots."""
     keys = [key for it in domains for key in (f"{it}/**", f"{it}/**/@adv/**")] + [f"{SPACE}/**"]
-    return _rule(name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys)
+    return _allow(name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys)
 
 
-def _rule(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequence[str]) -> Rule:
+def _allow(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequence[str]) -> Rule:
+    """Return a rule that allows these messages at these keys."""
     return {
         "id": name,
         "messages": list(messages),

@@ -1,19 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Configurations of a fleet's Zenoh router and of each robot's sessions, by the key ``zenoh`` of its
-file; and what free_fleet needs of a plan: the Zenoh bridge of each robot, and the robots of its fleet
-adapter.
+"""Configurations of a fleet's Zenoh router and sessions, and the files of free_fleet.
 
-rmw_zenoh reads such a file in place of its own default, so what it sets for ROS is set here as well:
-``DEFAULT_RMW_ZENOH_SESSION_CONFIG.json5`` and ``..._ROUTER_CONFIG.json5`` at 30f3030, the values with
-"ROS setting". Who a session is a router can tell by its certificate alone: rmw_zenoh is built without
-user and password (``zenoh_cpp_vendor/CMakeLists.txt``). The certificates are those of an sros2
-keystore, as in rmw_zenoh's ``zenoh_security_tools``; their common name is the enclave (sros2
-``_enclave.py``).
-
-Source: open-rmf/free_fleet 002505f. The adapter reads ``ROBOT/tf`` and ``ROBOT/battery_state``, calls
-``ROBOT/navigate_to_pose`` (nav2_robot_adapter.py), looks up map -> ``robot_frame`` with what is on that
-tf topic alone, and wants ``navigation_stack`` and ``initial_map`` of each robot (fleet_adapter.py). Its
-bridges are of zenoh-bridge-ros2dds, where a name is a regular expression of the whole name
+rmw_zenoh reads such a file in place of its own default, so what it sets for ROS is set here as
+well: ``DEFAULT_RMW_ZENOH_SESSION_CONFIG.json5`` and ``..._ROUTER_CONFIG.json5`` at 30f3030, the
+values with "ROS setting". Who a session is a router can tell by its certificate alone: rmw_zenoh
+is built without user and password (``zenoh_cpp_vendor/CMakeLists.txt``). The certificates are
+those of an sros2 keystore, as in rmw_zenoh's ``zenoh_security_tools``; their common name is the
+enclave (sros2 ``_enclave.py``). Source: open-rmf/free_fleet 002505f. The adapter reads
+``ROBOT/tf`` and ``ROBOT/battery_state``, calls ``ROBOT/navigate_to_pose``
+(nav2_robot_adapter.py), looks up map -> ``robot_frame`` with what is on that tf topic alone, and
+wants ``navigation_stack`` and ``initial_map`` of each robot (fleet_adapter.py). Its bridges are
+of zenoh-bridge-ros2dds, where a name is a regular expression of the whole name
 (DEFAULT_CONFIG.json5 at 0b277b7)."""
 
 import json
@@ -48,9 +45,7 @@ _ANYBODY: Config = {"id": "anybody"}
 
 
 class Setup(NamedTuple):
-    """What the plan does not say: the router's endpoint, the domain of a plan that has one for all, the
-    keystore (empty for none), the enclaves of those that may do anything, whether each robot has a
-    router of its own."""
+    """What the plan does not say: router, domain, keystore, enclaves of operators, own routers."""
 
     router: str
     domain: int
@@ -64,11 +59,11 @@ def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
     known = rights(plan, setup.domain)
     domains = sorted({*domain_of(plan).values()}) or [setup.domain]
     # On every address, at the port that the robots connect to.
-    protocol, _, address = _endpoint(setup).partition("/")
+    protocol, _, address = _router_endpoint(setup).partition("/")
     listening = f"{protocol}/0.0.0.0:{address.rpartition(':')[2]}"
     config: Config = {"mode": "router", "listen": {"endpoints": [listening]}}
-    config |= _common("/router", setup)
-    about = f"The fleet's router: {_start(ROUTER_FILE)}."
+    config |= _shared_settings("/router", setup)
+    about = f"The fleet's router: {_router_command(ROUTER_FILE)}."
     if setup.keystore:
         parts = [(_subject(f"/{it.robot}"), robot_rules(it, FLEET_ROUTER)) for it in known]
         parts += [(_subject(it), [all_rule(it, domains)]) for it in setup.operators]
@@ -79,30 +74,30 @@ def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
             f"{about} Without a keystore it cannot tell robots apart, so each robot's"
             " own file is all that keeps it from the others"
         )
-    yield ROUTER_FILE, _text(config, about)
+    yield ROUTER_FILE, _config_text(config, about)
     for given in known:
         name = f"{given.robot}.json5"
         # A client of the fleet's router, or a peer beside a router of its own.
-        config = _client(f"/{given.robot}", setup)
+        config = _client_config(f"/{given.robot}", setup)
         if setup.own_routers:
             config = {
                 "mode": "peer",
                 "connect": {"endpoints": [LOCAL_ROUTER]},
                 "listen": {"endpoints": ["tcp/localhost:0"]},
-                **_common("", setup._replace(keystore="")),
+                **_shared_settings("", setup._replace(keystore="")),
             }
         config["access_control"] = access_control([(_ANYBODY, robot_rules(given))])
-        yield name, _text(config, f"The nodes of {given.robot}: {_session(name)}")
+        yield name, _config_text(config, f"The nodes of {given.robot}: {_session(name)}")
         if setup.own_routers:
             name = f"{given.robot}_router.json5"
-            about = f"The router on {given.robot}: {_start(name)}"
-            yield name, _text(_own_router(given, setup), about)
+            about = f"The router on {given.robot}: {_router_command(name)}"
+            yield name, _config_text(_own_router(given, setup), about)
     for enclave in setup.operators:
         name = f"{operator_word(enclave)}.json5"
         about = (
             f"Who may do anything, as {enclave}: {_session(name)}, multibot snapshot --from {name}"
         )
-        yield name, _text(_client(enclave, setup), about)
+        yield name, _config_text(_client_config(enclave, setup), about)
 
 
 def operator_word(enclave: str) -> str:
@@ -110,19 +105,20 @@ def operator_word(enclave: str) -> str:
     return enclave.strip("/").replace("/", "_")
 
 
-def _start(name: str) -> str:
+def _router_command(name: str) -> str:
     return f"ZENOH_ROUTER_CONFIG_URI={name} (its full path) ros2 run rmw_zenoh_cpp rmw_zenohd"
 
 
 def _session(name: str) -> str:
+    """Return the shell line that makes a session use a file."""
     return f"export ZENOH_SESSION_CONFIG_URI={name} (its full path)"
 
 
-def _text(config: Config, about: str) -> bytes:
+def _config_text(config: Config, about: str) -> bytes:
     return f"// {about}.\n{json.dumps(config, indent=2)}\n".encode()
 
 
-def _common(enclave: str, setup: Setup) -> Config:
+def _shared_settings(enclave: str, setup: Setup) -> Config:
     """Return what rmw_zenoh sets for ROS, and the certificates."""
     config: Config = json.loads(own_text(__file__, "zenoh_session.json"))
     if setup.keystore:
@@ -143,12 +139,13 @@ def _common(enclave: str, setup: Setup) -> Config:
     return config
 
 
-def _endpoint(setup: Setup) -> str:
+def _router_endpoint(setup: Setup) -> str:
     """Return the router's endpoint; with certificates it is TLS."""
     return f"tls/{setup.router.partition('/')[2]}" if setup.keystore else setup.router
 
 
 def _subject(enclave: str) -> Config:
+    """Return the subject of access control for an enclave."""
     return {"id": enclave, "cert_common_names": [enclave]}
 
 
@@ -156,9 +153,9 @@ def _own_router(given: Rights, setup: Setup) -> Config:
     """Return a router on the robot: nodes connect by loopback, the rest through the fleet's router."""
     config: Config = {
         "mode": "router",
-        "connect": {"endpoints": [_endpoint(setup)]},
+        "connect": {"endpoints": [_router_endpoint(setup)]},
         "listen": {"endpoints": [LOCAL_ROUTER]},
-        **_common(f"/{given.robot}", setup),
+        **_shared_settings(f"/{given.robot}", setup),
     }
     if setup.keystore:
         config["transport"]["link"]["protocols"] = ["tls", "tcp"]
@@ -167,10 +164,10 @@ def _own_router(given: Rights, setup: Setup) -> Config:
     return config
 
 
-def _client(enclave: str, setup: Setup) -> Config:
+def _client_config(enclave: str, setup: Setup) -> Config:
     """Return a client: all that it sends goes through the router, which may refuse it."""
-    config = {"mode": "client", "connect": {"endpoints": [_endpoint(setup)]}}
-    return config | _common(enclave, setup)
+    config = {"mode": "client", "connect": {"endpoints": [_router_endpoint(setup)]}}
+    return config | _shared_settings(enclave, setup)
 
 
 ZENOH = "zenoh"
@@ -223,7 +220,7 @@ def free_fleet_files(plan: System, setup: FreeFleet) -> Iterator[tuple[str, byte
         if not any((it.kind, it.role, it.name) == (ACTION, SERVES, served) for it in plan.ends):
             what = f"no node of {robot.name} serves {served}"
             raise UsageError(f"{FREE_FLEET}: {what}; name the node set that does, as nav2")
-        yield f"{FREE_FLEET}/{robot.name}.json5", _bridge(robot, numbers[robot.name], setup)
+        yield f"{FREE_FLEET}/{robot.name}.json5", _bridge_config(robot, numbers[robot.name], setup)
     rows = [
         "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.",
         "rmf_fleet:",
@@ -243,7 +240,7 @@ def free_fleet_files(plan: System, setup: FreeFleet) -> Iterator[tuple[str, byte
     yield f"{FREE_FLEET}/{ROBOTS_FILE}", "\n".join((*rows, "")).encode()
 
 
-def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
+def _bridge_config(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
     battery = f"/{robot.space}/{_BATTERY}"
     config = {
         "plugins": {

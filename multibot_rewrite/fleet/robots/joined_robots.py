@@ -33,8 +33,7 @@ ABOUT_PARTS = declare("MF848", "joined-parts", NOTE, formats=("fleet",))
 
 
 def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
-    """Return the fleet with the descriptions of robots that have parts, and findings about the
-    first robot of each kind; raises InputError as ``join_plain``."""
+    """Return the fleet with joined descriptions, findings by robot; raises as ``join_plain``."""
     found: dict[str, Joined] = {}
     notes: dict[str, Sequence[Finding]] = {}
     robots = []
@@ -89,8 +88,7 @@ _STANDING = Pose()
 
 
 class Arm(NamedTuple):
-    """A robot of a cell: its written URDF and SRDF, the word in its frames, its place; ``place`` is
-    its line of the fleet file."""
+    """A robot of a cell: URDF and SRDF, the word in its frames, its pose, its line in the file."""
 
     name: str
     tag: str
@@ -106,9 +104,10 @@ class Arm(NamedTuple):
 
 
 def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapping[str, bytes]:
-    """Return one URDF and one SRDF of all arms, by their endings: each arm is fixed to the link
-    ``world`` at its place, together with the cell's own groups. Raises InputError for an arm that
-    has no place or moves, for groups that do not exist, and as ``join_texts`` and
+    """Return one URDF and one SRDF of all arms, by their endings.
+
+    Each arm is fixed to the link ``world`` at its pose. Raises InputError for an arm without a
+    pose or one that moves, for groups that do not exist, and as ``join_texts`` and
     ``joined_srdf``."""
     root = etree.Element("robot", name=cell.name)
     etree.SubElement(root, "link", name=world)

@@ -13,6 +13,7 @@ from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -26,7 +27,6 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import nodes_of_sets
 from multibot_rewrite.knowledge.node_sets import is_apart
 from multibot_rewrite.knowledge.programs import Program, started_as
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.related_files.names.node_topics import fleet_topics, robot_topic
 from multibot_rewrite.related_files.names.rename_map import KINDS, spell
@@ -119,8 +119,8 @@ class LoadedRobot:
     @property
     @checked
     def params_files(self) -> tuple[str, ...]:
-        """The names of its parameter files: those of the fleet file, else ``params.yaml`` where its
-        nodes need parameters. Raises as ``LoadedFleet.made``."""
+        """The names of its parameter files, if any; raises as ``LoadedFleet.made``."""
+        # Those of the fleet file, else ``params.yaml``.
         return tuple(map(os.path.basename, params_paths(self._robot, self._fleet.files)))
 
     @property
@@ -130,40 +130,36 @@ class LoadedRobot:
 
     @property
     def description_parameters(self) -> dict[str, Any]:
-        """The parameters of its robot_state_publisher: ``robot_description``, and ``frame_prefix`` in
-        the layout of that name. Raises nothing."""
+        """The parameters of its robot_state_publisher, with ``frame_prefix``; raises nothing."""
         prefix = self._robot.frame_prefix
         given = {"robot_description": self.description}
         return {**given, "frame_prefix": prefix} if prefix else given
 
     @property
     def srdf(self) -> str:
-        """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none. Raises
-        nothing."""
+        """Its rewritten SRDF, empty if it has none; raises nothing."""
         return self._robot.srdf.decode()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the parameters of its move_group, as moveit_configs_utils' ``to_dict()`` has them
-        for one robot: description, SRDF and the files of ``related_files: moveit``. Raises as
-        ``text``."""
+        """Return move_group's parameters as moveit_configs_utils does; raises as ``text``."""
         files = self._robot.spec.related_files.get("moveit", ())
         texts = {it: self.text(it) for it in files}
         return move_group_parameters(self.description, self.srdf, texts)
 
     @cached_property
     def table(self) -> NodeNames:
-        """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``. Raises
-        nothing."""
+        """Names and remappings of its nodes, as ``table.for_node("amcl")``; raises nothing."""
         return names_of(self._fleet.planned.table, self._graph)
 
     @checked
     def node(self, node: str, *files: str) -> dict[str, Any]:
-        """Return name, namespace, remappings and parameters of a node of its node sets, for
-        ``Node(**...)``. ``files`` are parameter files of the fleet; amcl also gets its start pose,
-        and each node the clock of the fleet file. If other nodes run in its process, such as
-        costmaps or components, these are paths of files, deleted with this process: only files
-        reach them. Raises UsageError for a node that no node set has and for a controller
-        (``spawner``), and as ``params`` for a file."""
+        """Return what ``Node(**...)`` takes for a node of its node sets.
+
+        ``files`` are parameter files of the fleet; amcl also gets its start pose, and each node
+        the clock of the fleet file. If other nodes run in its process, such as costmaps or
+        components, these are paths of files, deleted with this process: only files reach them.
+        Raises UsageError for a node that no node set has and for a controller (``spawner``), and
+        as ``params`` for a file."""
         clock = {} if self.use_sim_time is None else {"use_sim_time": self.use_sim_time}
         given: list[Any] = [self.params(file, node) for file in files]
         if self.table.inside(node):
@@ -180,17 +176,18 @@ class LoadedRobot:
 
     @checked
     def spawner(self, controller: str, *paths: str) -> dict[str, Any]:
-        """Return what loads a controller of its node sets, with its remap rules, for
-        ``Node(**...)``. ``paths`` are parameter files for it. Raises UsageError for a node that is
-        no controller or that no node set has."""
+        """Return what ``Node(**...)`` takes to load a controller with parameter files.
+
+        Raises UsageError for a node that is no controller or that no node set has."""
         made = self.table.spawner(controller)
         files = (word for path in paths for word in ("-p", path))
         return {**made, "arguments": [*made["arguments"], *files]}
 
     @checked
     def program(self, node: str) -> Program | None:
-        """Return what is started for a node of its node sets, its class if it is a component; None
-        if no source says it. Raises UsageError for a node that no node set has."""
+        """Return what is started for a node, its class if a component; None if no source says it.
+
+        Raises UsageError for a node that no node set has."""
         self.table.name(node)
         runs = self._fleet.plan.evidence_of(self._robot).nodes
         facts = next((it for it in runs if it.name == node), None)
@@ -198,11 +195,12 @@ class LoadedRobot:
 
     @checked
     def params(self, file: str, node: str) -> dict[str, Value]:
-        """Return the parameters of a node in a rewritten parameter file of the fleet, by dotted
-        names. ``node`` is its name in the node set or in the file. A node of a node set without a
+        """Return a node's parameters in a rewritten parameter file, by dotted names.
+
+        ``node`` is its name in the node set or in the file. A node of a node set without a
         section gets an empty dict. Raises UsageError for an unknown node, and as ``text`` and
         ``LoadedFleet.parameters`` for the file."""
-        document = self._fleet.parameters(self._own(file))
+        document = self._fleet.parameters(self._own_path(file))
         known = node in self.table.nodes
         release, naming = self._fleet.planned.table.release, self._robot.topics.naming
         above, name = placed(self._graph, node, naming, is_apart(node, release))
@@ -215,22 +213,20 @@ class LoadedRobot:
 
     @checked
     def text(self, file: str) -> str:
-        """Return this robot's version of a file of the fleet, such as ``params.yaml`` or
-        ``bridge.yaml``. Raises as ``LoadedFleet.text``."""
-        return self._fleet.text(self._path(file))
+        """Return its version of a file such as ``params.yaml``; raises as ``LoadedFleet.text``."""
+        return self._fleet.text(self._path_in_build(file))
 
     @checked
     def node_text(self, file: str) -> str:
-        """Return the text of a parameter file for nodes that are started here: with full node
-        names, also if the fleet file wants files for nav2_bringup. Raises as ``text``."""
-        return self._fleet.node_text(self._path(file))
+        """Return a parameter file for nodes started here, with full names; raises as ``text``."""
+        return self._fleet.node_text(self._path_in_build(file))
 
-    def _path(self, file: str) -> str:
+    def _path_in_build(self, file: str) -> str:
         name = os.path.basename(file)
-        own = self._own(file)
+        own = self._own_path(file)
         return own if own in self._fleet.files else name
 
-    def _own(self, file: str) -> str:
+    def _own_path(self, file: str) -> str:
         """Return where its version of a file is; the folder decides between two with one name."""
         *_, above, name = ("", *os.path.normpath(file).split(os.sep))
         places = dict(self._robot.spec.places)
@@ -239,23 +235,22 @@ class LoadedRobot:
 
     @checked
     def frame(self, name: str) -> str:
-        """Return this robot's name of a frame: a link, or one that its nodes or any robot's nodes
-        send. Raises UsageError for another."""
+        """Return its name of a link or frame that nodes send; raises UsageError for another."""
         runs = self._fleet.plan.evidence_of(self._robot).nodes
         sent = (it.default for node in runs for it in node.frames)
-        return self._known("frame", name, (*SENT_FRAMES, *sent))
+        return self._own_name("frame", name, (*SENT_FRAMES, *sent))
 
     @checked
     def link(self, name: str) -> str:
         """Return this robot's name of a link of the description; raises UsageError for another name."""
-        return self._known("link", name)
+        return self._own_name("link", name)
 
     @checked
     def joint(self, name: str) -> str:
         """Return this robot's name of a joint of the description; raises as ``link``."""
-        return self._known("joint", name)
+        return self._own_name("joint", name)
 
-    def _known(self, word: str, name: str, more: Iterable[str] = ()) -> str:
+    def _own_name(self, word: str, name: str, more: Iterable[str] = ()) -> str:
         """Return the robot's version of a name that the description or ``more`` has."""
         names = self._robot.names
         described = [it for kind in KINDS[word] for it in names.declared.get(kind, ())]
@@ -273,8 +268,7 @@ class LoadedRobot:
 
     @property
     def tf_remappings(self) -> Rules:
-        """The remappings with which a node outside the node sets reads this robot's tf; raises
-        nothing."""
+        """The remappings with which another node reads its tf; raises nothing."""
         names = self._robot.topics
         targets = {
             f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS
@@ -283,8 +277,7 @@ class LoadedRobot:
 
     @property
     def relays(self) -> dict[str, Relay]:
-        """The relays of its tf to ``/tf``, by their names in ``table``; empty unless the fleet file
-        says ``relayed``. Raises nothing."""
+        """The relays of its tf to ``/tf`` by name, if the fleet asks for them; raises nothing."""
         made = relays(self._graph, self._robot.topics.naming, self._fleet.plan.file)
         return {it.run.node: it for it in made}
 

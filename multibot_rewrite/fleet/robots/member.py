@@ -24,16 +24,15 @@ from multibot_rewrite.description.steps.document import Document, read_document
 
 
 class Member(NamedTuple):
-    """A robot of a fleet: its namespace, the tag in its frames, its name, and what its rewritten
-    description holds and starts. ``described`` is what robot_state_publisher gets; where the simulator
-    gets another file, all else is of that. ``source`` is the description before, ``sent`` the one that
-    ``described`` is made of, ``tree`` what is known of plugins, ``shared`` are findings about names
-    that any two robots of it would have, ``unread`` about arguments that its xacro does not know;
-    ``read`` are the files that were read for it, ``plain`` the names that arguments of its xacro make,
-    by what they are without. ``handed_on`` are the remap rules of a plugin with a controller manager,
-    as they are in ``source``. ``published`` are frames of ``described`` that the simulator's file has
-    not.
-    """
+    """A robot of a fleet, with what its rewritten description holds and starts.
+
+    ``described`` is what robot_state_publisher gets, made from ``sent``; where the simulator
+    gets another file, all else is of that. ``source`` is the description before, ``tree`` what
+    is known of plugins; ``shared`` are findings about names that any two robots of it would
+    have, ``unread`` about arguments that its xacro does not know; ``plain`` maps names without
+    xacro arguments to those with them. ``handed_on`` are the remap rules of a plugin with a
+    controller manager. ``published`` are frames of ``described`` that the simulator's file has
+    not."""
 
     robot: str
     tag: str
@@ -60,8 +59,9 @@ class Member(NamedTuple):
 def member(
     source: Rewrite, data: bytes, tag: str, real: bool = False, described: Member | None = None
 ) -> Member:
-    """Return the robot of a rewrite; ``data`` is its final description, of which a ``real`` robot
-    takes nothing that is for a simulator. ``described`` has what it publishes, if that is another
+    """Return the robot of a rewrite; a ``real`` one takes nothing that is for a simulator.
+
+    ``data`` is its final description, ``described`` has what it publishes if that is another
     one. Raises InputError where ROS refuses the names of a plugin."""
     document, tree = source.template.inventory.document, source.template.tree
     data = without_simulator(data, document.file) if real else data
@@ -120,8 +120,9 @@ def line_of(document: Document, tag: str, number: int) -> int:
 
 
 def is_for_simulator(member: Member) -> bool:
-    """Return whether a simulator may run it. It may not if nothing in its description is for one,
-    and it drives hardware or has no mass: Gazebo spawns nothing of that."""
+    """Return whether a simulator may run it."""
+    # It may not if nothing in its description is for one, and it drives hardware or has no mass:
+    # Gazebo spawns nothing of that.
     root: etree._Element = member.inventory.document.root
     if root.tag == "sdf" or has_parts_for_simulator(member):
         return True

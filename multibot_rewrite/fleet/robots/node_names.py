@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.planning.records import Run, Table
-from multibot_rewrite.planning.ways import COMPONENT, SPAWNER, Started, launch_arguments, started
-from multibot_rewrite.system.records import CALLS
+from multibot_rewrite.planning.ways import Started, launch_arguments, started
+from multibot_rewrite.system.records import CALLS, COMPONENT, SPAWNER
 
 # What a lifecycle manager calls of each node that it manages (nav2_util lifecycle_service_client.cpp).
 CHANGE_STATE = "change_state"
@@ -33,9 +33,10 @@ class NodeNames(NamedTuple):
 
     @checked
     def for_node(self, node: str) -> Rules:
-        """Return the node's remap rules, as ``launch_ros.actions.Node`` and ``ComposableNode`` take
-        them. Rules for nodes in its process come first: rcl applies the first rule that matches.
-        Raises UsageError for a node that no node set of the fleet has, and for a controller."""
+        """Return the node's remap rules as launch_ros takes them; those of other nodes come first.
+
+        rcl applies the first rule that matches. Raises UsageError for a node that no node set of
+        the fleet has, and for a controller."""
         own = self._node_of(node)
         it = self.started.get(node)
         if it is None:
@@ -46,9 +47,9 @@ class NodeNames(NamedTuple):
 
     @checked
     def spawner(self, node: str) -> dict[str, Any]:
-        """Return package, executable, namespace and arguments of the program that loads a
-        controller. ``launch_ros.actions.Node`` takes them as they are. Raises as ``for_node``, and
-        UsageError for a node that is no controller."""
+        """Return what ``Node`` of launch_ros takes to load a controller; raises as ``for_node``.
+
+        Raises UsageError for a node that is no controller."""
         self._node_of(node)
         it = self.started.get(node)
         if it is None or it.way != SPAWNER:

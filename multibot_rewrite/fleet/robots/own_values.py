@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How each robot of a fleet gets a value of its own in its description: by which argument of its xacro,
-or at which line that has no argument."""
+"""Finds the xacro argument, or the line, that gives each robot a value of its own."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
@@ -36,8 +35,7 @@ class Source(NamedTuple):
 
 
 def sources_of(written: Written, member: Member, elements: Iterable[_Element]) -> list[Source]:
-    """Return what gives the texts of elements in a robot's description, as it was read; empty if it
-    is unknown: for a file that is no xacro, or cannot be expanded within bounds."""
+    """Return what gives the texts of elements in a robot's description; empty if unknown."""
     path, arguments = written
     if not is_xacro(path):
         return []
@@ -49,7 +47,7 @@ def sources_of(written: Written, member: Member, elements: Iterable[_Element]) -
     found: dict[Source, None] = {}
     for it in elements:
         its = read.pieces.of(numbers[it], "", it.text or "")
-        sources = [one for piece in its for one in _source(read, piece)]
+        sources = [one for piece in its for one in _sources_of_piece(read, piece)]
         named = [one for one in sources if one.argument]
         if sources and not named:
             named = [*_by_trying(written, read.sources, it, numbers[it])]
@@ -60,8 +58,7 @@ def sources_of(written: Written, member: Member, elements: Iterable[_Element]) -
 def _by_trying(
     written: Written, sources: Mapping[str, bytes], element: _Element, number: int
 ) -> Iterator[Source]:
-    """Yield the argument that makes the text of an element by way of a default or a property: with
-    another value the text is another one."""
+    """Yield the argument that changes an element's text, by way of a default or a property."""
     names = (
         it.get("name", "")
         for file, data in sources.items()
@@ -79,8 +76,8 @@ def _by_trying(
                 return
 
 
-def _source(read: Expansion, piece: Piece) -> Iterator[Source]:
-    """Yield what wrote a piece; nothing for blanks and for what is computed."""
+def _sources_of_piece(read: Expansion, piece: Piece) -> Iterator[Source]:
+    """Yield what wrote a piece; nothing for blanks and computed pieces."""
     if piece.kind == EXPRESSION or not piece.text.strip():
         return
     if piece.kind == GIVEN:

@@ -167,14 +167,14 @@ def _jobs(
     it: RobotSpec, read: Callable[..., Reader], words: tuple[Sequence[str], Set[str]]
 ) -> Jobs:
     """Return the jobs of a robot's files; an argument may be for one of them alone."""
-    taken = _taken(it, it.description, it.srdf)
+    taken = _taken_arguments(it, it.description, it.srdf)
     description = job_for(read(it, it.description), taken, *words)
     srdf = job_for(read(it, it.srdf, it.description), taken, *words) if it.srdf else None
     # The SRDF is read beside the description.
     description = description._replace(read=(srdf or description).read)
     model = None
     if it.simulated:
-        model = job_for(read(it, it.simulated), _taken(it, it.simulated), *words)
+        model = job_for(read(it, it.simulated), _taken_arguments(it, it.simulated), *words)
         both = joined_reads(description.read, model.read)
         description, model = description._replace(read=both), model._replace(read=both)
     if it.parts:
@@ -183,7 +183,7 @@ def _jobs(
     return Jobs(description, srdf, model)
 
 
-def _taken(robot: RobotSpec, *files: str) -> Arguments:
+def _taken_arguments(robot: RobotSpec, *files: str) -> Arguments:
     """Return the arguments for a robot's description or model, if one of these is a xacro."""
     return robot.arguments if any(map(is_xacro, files)) else {}
 
@@ -191,13 +191,10 @@ def _taken(robot: RobotSpec, *files: str) -> Arguments:
 def rewrite_robots(
     robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]
 ) -> list[RewrittenRobot]:
-    """Rewrite every robot's description and SRDF, in the order of the robots. One that says nothing of
-    a simulator is in that of the others.
-
-    Raises as ``rewrite_all``.
-    """
+    """Rewrite every robot's description and SRDF, in their order; raises as ``rewrite_all``."""
+    # One that says nothing of a simulator is in that of the others.
     groups = lists_by_key((robot.sources, robot) for robot in robots)
-    made = (it for key, group in groups.items() for it in _rewritten(group, jobs[key]))
+    made = (it for key, group in groups.items() for it in _rewritten_group(group, jobs[key]))
     found = {it.spec.name: it for it in made}
     classic = any(it.is_classic for it in found.values())
     return [
@@ -213,16 +210,16 @@ def _names_simulator(it: RewrittenRobot) -> bool:
     return root.tag == "sdf" or parts or any(map(may_be_simulated, hardware_classes(root)))
 
 
-def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
+def _rewritten_group(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
     naming, own = jobs.description.naming, jobs.description.own.plain
     if jobs.srdf:
         own = {**jobs.srdf.own.plain, **own}
-    texts = _texts(jobs.description, group)
+    texts = _namespaced_texts(jobs.description, group)
     nothing = [None] * len(group)
-    semantics = _texts(jobs.srdf, group) if jobs.srdf else nothing
-    models = _texts(jobs.simulated, group) if jobs.simulated else nothing
+    semantics = _namespaced_texts(jobs.srdf, group) if jobs.srdf else nothing
+    models = _namespaced_texts(jobs.simulated, group) if jobs.simulated else nothing
     for robot, text, semantic, model in zip(group, texts, semantics, models, strict=True):
-        data = _final(text, robot, naming)
+        data = _final_description(text, robot, naming)
         made, simulated = member(text, data, robot.tag, robot.simulator == REAL), b""
         said = semantic.template.inventory.declared if semantic else NOTHING
         declared = with_srdf(text.template.inventory.declared, said)
@@ -233,7 +230,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
                 kind: {**both.get(kind, {}), **declared.get(kind, {})}
                 for kind in {*declared, *both}
             }
-            simulated = _final(model, robot, jobs.simulated.naming)
+            simulated = _final_description(model, robot, jobs.simulated.naming)
             found = (*found, *model.findings)
             made = member(model, simulated, robot.tag, described=made)
         simulated_parts = (model or text).template.inventory
@@ -243,7 +240,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
         yield RewrittenRobot(
             robot,
             data,
-            _final(semantic, robot, naming) if semantic else b"",
+            _final_description(semantic, robot, naming) if semantic else b"",
             names,
             names._replace(robot=robot.namespace),
             made._replace(name=robot.name),
@@ -255,8 +252,8 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
 
 
 def _srdf_findings(semantic: Rewrite) -> Iterator[Finding]:
-    """Yield the findings of an SRDF; a single one about its links and joints if most are missing:
-    then it was not written for its URDF."""
+    """Yield the findings of an SRDF; a single one if most of its links and joints are missing."""
+    # Then it was not written for its URDF.
     named = {
         (kind, name.text): name.kind
         for names in semantic.template.inventory.names
@@ -278,10 +275,9 @@ def _srdf_findings(semantic: Rewrite) -> Iterator[Finding]:
     yield from (it for it in semantic.findings if it.code not in _LOOSE)
 
 
-def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
-    """Yield the text of each robot with its namespace; refused if it has one of its names already.
-    A namespace of several levels is no robot's name: its robot's text is made from its halves
-    alone."""
+def _namespaced_texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
+    """Yield the text of each robot; raises if it has one of the robot's names already."""
+    # A namespace of several levels is no robot's name: its text is made from its halves alone.
     words = [it.tag if "/" in it.namespace else it.namespace for it in group]
     for number, text in enumerate(rewrite_job(job, words, again=True)):
         if not number:
@@ -294,22 +290,23 @@ def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
         yield text._replace(robot=group[number].namespace)
 
 
-def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
+def _final_description(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
     """Return the description of a robot; if namespace and tag differ, two rewrites, each verified."""
     if robot.tag == robot.namespace:
         return text.data
     template = text.template
     source, file = template.inventory.document.source, template.inventory.document.file
-    data = _halved(source, file, robot.namespace, _kinds(naming, graph=True), template)
-    return _halved(data, file, robot.tag, _kinds(naming, graph=False), template)
+    data = _half_text(source, file, robot.namespace, _naming_of_kinds(naming, graph=True), template)
+    return _half_text(data, file, robot.tag, _naming_of_kinds(naming, graph=False), template)
 
 
-def _kinds(naming: Naming, graph: bool) -> Naming:
+def _naming_of_kinds(naming: Naming, graph: bool) -> Naming:
     kept = {kind: it for kind, it in naming.separators.items() if (kind in GRAPH_KINDS) == graph}
     return naming._replace(separators=kept)
 
 
-def _halved(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
+def _half_text(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
+    """Return a description rewritten with one half of the naming."""
     # The second rewrite finds names that the first one has rewritten for the other word.
     prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
     return next(pipeline.render(prepared, [robot], again=True))

@@ -64,7 +64,7 @@ def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
 
 
 def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
-    """Return findings sorted by place; what is the same for many robots is one finding."""
+    """Return findings sorted by place, equal ones of many robots as one."""
     specs = [it.spec for it in plan.robots]
     ordered = sorted(
         set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message, it)

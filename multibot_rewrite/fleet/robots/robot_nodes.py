@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes that a robot of a fleet file runs: its node sets, as its own files have them. Some run
-once for all robots, as one map_server with one map."""
+"""The nodes that a robot of a fleet file runs: its node sets, as its own files have them."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -90,14 +89,14 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 
 
 class RobotEvidence(NamedTuple):
-    """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
-    where its files and node sets disagree, the controllers that its launch files spawn, whether
-    these start all of its nodes and no simulator, the arguments of all that they start, the frames
-    that it has in the place of defaults, the transforms that a simulator sends, whether a node of
-    its files sends one of these, which no bridge file of its own has, what its launch files hand on
-    to nodes, the processes of these that are no nodes, the environment of all, what places it, what
-    they do not start on a condition, and the quality of service of topics that their bridges
-    set."""
+    """What a robot's files set for nodes, what they start, and where they disagree.
+
+    ``known`` are known nodes by name; ``spawned`` are controllers that launch files spawn.
+    ``unsimulated``: launch files start all of its nodes and no simulator. ``arguments`` and
+    ``environment`` are those of all that they start, ``handed_on`` is what they give to nodes,
+    ``processes`` are no nodes, ``placing`` spawns it, ``idle`` is not started on a condition,
+    ``qos`` is of their bridges' topics. ``frames`` replace defaults; ``simulated`` are
+    transforms of a simulator, ``is_placed``: a node of its files sends one of these, too."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
@@ -124,17 +123,18 @@ def robot_nodes(
     member: Member,
     topics: Mapping[str, str],
 ) -> RobotEvidence:
-    """Return the nodes of a robot with this description; ``notes`` are findings about its files.
-    ``topics`` are the full names of those that xacro arguments make, by their names without these.
-    Raises InputError for a parameter file that cannot be read."""
+    """Return the nodes of a robot with this description; raises InputError for a parameter file.
+
+    ``notes`` are findings about its files, ``topics`` the full names that xacro arguments make,
+    by the names without these."""
     parameters = load_known_nodes(file.nodes, file.distro)
     read = given_nodes(params_of(spec).values(), parameters)
-    read = [*(it for it in read if it.name != CARTOGRAPHER), *_of_lua(spec)]
+    read = [*(it for it in read if it.name != CARTOGRAPHER), *_runs_of_lua(spec)]
     own = tuple(without_robot(it, spec.words) for it in read)
-    known = _known(own, file)
+    known = _known_nodes(own, file)
     node_set = tuple(it for it in nodes_of_sets(spec, file) if _is_needed(it, spec, member))
     if spec.simulator != REAL:
-        node_set = (*node_set, *_manager_in_plugin(node_set, own, member, file.distro))
+        node_set = (*node_set, *_manager_in_plugin(node_set, own, member, spec, file.distro))
     known = known_here(known, spec.launch, spec.words[0], file.distro)
     launched = launched_robot(node_set, spec.launch, known, spec.words, parameters, file.distro)
     launched = without_bridges(launched) if launched else None
@@ -144,11 +144,11 @@ def robot_nodes(
     started_here = {it.name: it for it in load_node_set(PROGRAM, file.distro) if it.name == MANAGER}
     without, findings = nodes_with(launched, node_set, given, known | started_here)
     source = member.source
-    standing = _for_its_wheels(without, given, member)
+    standing = _without_wheel_controllers(without, given, member)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
-    of_srdf = () if whole else tuple(_of_srdf(spec, nodes, known))
+    of_srdf = () if whole else tuple(_srdf_nodes(spec, nodes, known))
     nodes = (*nodes, *of_srdf)
     has, started = described(member, spec), launched.started if launched else {}
     fits = fitting_frames(member, nodes, (*has.sent, *sent_by_controllers(nodes)))
@@ -161,8 +161,8 @@ def robot_nodes(
     mine = frozenset() if file.nodes else mine
     fitting = fitted(own_fits, mine, free, given, known, has, spec)
     frames, nodes = changed_frames(fitting, nodes), fitting
-    written = _as_written(nodes, own, parameters, file.distro)
-    named = _made_by_arguments(written, given, topics) if topics else written
+    written = _with_written_topics(nodes, own, parameters, file.distro)
+    named = _with_topics_of_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
     # A vendor who bridges none of two that place the robot has a node that does.
     held = {it.get("link", "") for it in source.root.iterfind("joint/child")} if launched else ()
@@ -182,17 +182,17 @@ def robot_nodes(
     return _with_launch(evidence, spec, launched, file)
 
 
-def _of_lua(spec: RobotSpec) -> Iterator[Run]:
+def _runs_of_lua(spec: RobotSpec) -> Iterator[Run]:
     """Yield what the Lua file of a robot sets for its Cartographer."""
     for path in spec.related_files.get("lua", ()):
         run = Run("", CARTOGRAPHER, "", CARTOGRAPHER, (), UNKNOWN._replace(known=CARTOGRAPHER))
         yield run._replace(values=lua_values(text_of(spec, path), path), place=Place(path, 1))
 
 
-def _for_its_wheels(
+def _without_wheel_controllers(
     nodes: tuple[NodeFacts, ...], given: Iterable[Run], member: Member
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes; for a robot without wheels not the wheel controllers of a node set."""
+    """Return the nodes, without wheel controllers if the robot has no wheels."""
     root = member.source.root
     held = root.iterfind("joint[@type='fixed']/parent")
     if wheels_in(root) and not any(it.get("link") == WORLD for it in held):
@@ -209,7 +209,7 @@ def _with_launch(
     """Return a robot's evidence with what its launch files start."""
     if not launched:
         return it
-    every = (one._replace(once=_is_once(one.name, one.once, file)) for one in launched.processes)
+    every = (one._replace(once=_runs_once(one.name, one.once, file)) for one in launched.processes)
     own: dict[str, Any] = {it: getattr(launched, it) for it in _HANDED_ON}
     own["processes"] = tuple(every)
     # It may be asked for one robot by name.
@@ -223,12 +223,11 @@ def _with_launch(
     )
 
 
-def _as_written(
+def _with_written_topics(
     nodes: Iterable[NodeFacts], own: Iterable[Run], known: KnownNodes, release: str
 ) -> Iterator[NodeFacts]:
-    """Yield the nodes, with costmap topics as the robot's files will have them: absolute if the
-    node does not resolve a relative one in the robot's namespace."""
-    outside = {it.node: frozenset(_outside(it, known, release)) for it in own}
+    """Yield the nodes with costmap topics as the files will have them, absolute if necessary."""
+    outside = {it.node: frozenset(_outside_parameters(it, known, release)) for it in own}
     for it in nodes:
         moved = outside.get(it.name, frozenset())
         ends = (
@@ -240,11 +239,10 @@ def _as_written(
         yield it._replace(endpoints=tuple(ends)) if moved else it
 
 
-def _made_by_arguments(
+def _with_topics_of_arguments(
     nodes: Iterable[NodeFacts], given: Iterable[Run], topics: Mapping[str, str]
 ) -> Iterator[NodeFacts]:
-    """Yield the nodes with the topics of their parameters that arguments of the xacro make, by their
-    full names, as the robot's files will have them: they are the robot's already."""
+    """Yield the nodes with topics in parameters that xacro arguments make, by full names."""
     values = {it.node: it.values for it in given}
     for it in nodes:
         own = values.get(it.name, {})
@@ -258,7 +256,7 @@ def _made_by_arguments(
         yield it._replace(endpoints=tuple(ends))
 
 
-def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
+def _outside_parameters(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
     """Yield a node's parameters whose relative topics are resolved outside its robot's namespace."""
     if it.fact.known not in known.nodes:
         return
@@ -272,8 +270,7 @@ def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
 
 
 def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
-    """Return whether a node runs: a plugin's in a simulator that loads the plugin, a controller
-    manager if no plugin makes one, the robot's own bridge if there is something to bridge."""
+    """Return whether a node runs: a plugin's, a manager without a plugin, a bridge with topics."""
     if it.plugin and spec.simulator == REAL:
         return False
     if it.name == MANAGER and not it.plugin and spec.simulator != REAL:
@@ -282,11 +279,12 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
         # On Humble it has the name of Ignition, too.
         loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}
         return library_key(it.plugin) in loaded
-    of_one = it.name == BRIDGE_NODE and not it.shared
-    return not of_one or bool(spec.related_files.get("bridge")) or is_bridged(member.inventory)
+    if it.name != BRIDGE_NODE or spec.related_files.get("bridge"):
+        return True
+    return spec.simulator != REAL and (it.shared or is_bridged(member.inventory))
 
 
-def _of_srdf(
+def _srdf_nodes(
     spec: RobotSpec, nodes: Iterable[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> Iterator[NodeFacts]:
     """Yield the node that reads an SRDF, which may run, unless a node set or launch file has it."""
@@ -297,8 +295,8 @@ def _of_srdf(
         )
 
 
-def _known(given: Iterable[Run], file: FleetFile) -> dict[str, NodeFacts]:
-    """Return the known nodes; those that the robot's files name as their packages declare them."""
+def _known_nodes(given: Iterable[Run], file: FleetFile) -> dict[str, NodeFacts]:
+    """Return the known nodes; those in the robot's files as their packages declare them."""
     facts = known_nodes(file.nodes, file.distro, file.nodl)
     nodes = dict(facts.library.nodes)
     named = {it.fact.known for it in given} & nodes.keys()
@@ -311,26 +309,34 @@ def nodes_of_sets(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
 
 
 def _manager_in_plugin(
-    node_set: Iterable[NodeFacts], own: Iterable[Run], member: Member, release: str
+    node_set: Iterable[NodeFacts],
+    own: Iterable[Run],
+    member: Member,
+    spec: RobotSpec,
+    release: str,
 ) -> Iterator[NodeFacts]:
-    """Yield the controller manager of a plugin in the description, as the plugin's node set has it:
-    if a robot's file sets it, or a node set has controllers and no manager."""
+    """Yield the controller manager of a plugin, as the plugin's node set has it."""
+    # If a file sets it, or a node set has controllers and no manager. None for a launch file where
+    # the plugin has a namespace of its own: the description's reading has that manager.
     nodes = tuple(node_set)
-    if any(it.name == MANAGER for it in nodes):
+    made = {it.manager for it in member.reading.nodes} - {""}
+    elsewhere = made and not any(it.endswith(f"/{spec.namespace}/{MANAGER}") for it in made)
+    if any(it.name == MANAGER for it in nodes) or (spec.launch and elsewhere):
         return
     wide = (it.section for it in member.reading.nodes if it.section.process_wide)
     names = {name for it in wide for name in it.names}
     library = built_in(release)
     if any(it.host == MANAGER for it in nodes) or any(it.fact.known == MANAGER for it in own):
-        made = (it for name in library.node_sets for it in nodes_of_set(library, name) if it.plugin)
-        yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
+        every = (
+            it for name in library.node_sets for it in nodes_of_set(library, name) if it.plugin
+        )
+        yield from [it for it in every if it.name == MANAGER and it.plugin in names][:1]
 
 
 def related_file_nodes(
     nodes: Sequence[NodeFacts], node_set: Sequence[NodeFacts]
 ) -> Iterator[NodeFacts]:
-    """Yield the nodes for which related files are rewritten, with the names in their code: those in
-    parameters are what is rewritten."""
+    """Yield the nodes whose related files are rewritten, with the names in their code."""
     bare: Mapping[str, NodeFacts] = {it.name: it for it in node_set}
     # A section for a node in a namespace below the robot's is known to be right if the node runs there.
     mine = (it for it in nodes if it.name in bare or it.shared or it.host or "/" in it.name)
@@ -353,8 +359,8 @@ NOT_MANAGED = declare("MF803", "shared-node-not-managed", NOTE, formats=("fleet"
 def apart(
     nodes: Sequence[NodeFacts], file: FleetFile
 ) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
-    """Return the nodes, those that all robots share marked; and findings about managers of these."""
-    marked = [it._replace(shared=_is_once(it.name, it.shared, file)) for it in nodes]
+    """Return the nodes, shared ones marked, and findings about lifecycle managers of these."""
+    marked = [it._replace(shared=_runs_once(it.name, it.shared, file)) for it in nodes]
     shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]
     left, notes = {}, []
@@ -371,12 +377,12 @@ def apart(
     return tuple(left.get(it.name, it) for it in marked), tuple(notes)
 
 
-def _is_once(name: str, once: bool, file: FleetFile) -> bool:
+def _runs_once(name: str, once: bool, file: FleetFile) -> bool:
     return (once or name in file.shared_nodes) and name not in file.own_nodes
 
 
 def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:
-    """Raise InputError for a node of these keys that is not among the nodes that robots ``run``."""
+    """Raise InputError for a node of the file's lists that robots do not ``run``."""
     for key, names in (("shared_nodes", file.shared_nodes), ("own_nodes", file.own_nodes)):
         for name in (it for it in names if it not in run):
             near = did_you_mean_one_of(name, tuple(run)) or "name a node of a robot's node set"

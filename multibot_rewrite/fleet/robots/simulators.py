@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a robot and its hardware are simulated, by the fleet file or its launch files, and whether
-it is known what moves it.
+"""Whether robots and their hardware are simulated, and whether it is known what moves them.
 
-What a description has for a simulator does nothing on a real robot: plugins start no node, sensors and
-drives need no bridge.
-"""
+The fleet file or its launch files say it. What a description has for a simulator does nothing on
+a real robot: plugins start no node, sensors and drives need no bridge."""
 
 from __future__ import annotations
 
@@ -53,15 +51,15 @@ def other_hardware(robots: Sequence[RewrittenRobot], file: FleetFile) -> Iterato
     """Find hardware that is not of the world that the robots are in, once for each description."""
     told = set()
     for it in robots:
-        wrong = _of_other_world(it, nodes_of_sets(it.spec, file))
+        wrong = _unsuited_hardware(it, nodes_of_sets(it.spec, file))
         if wrong and it.spec.sources not in told:
             told.add(it.spec.sources)
-            yield _other_hardware(it, wrong)
+            yield _hardware_finding(it, wrong)
 
 
-def _of_other_world(robot: RewrittenRobot, node_set: Iterable[NodeFacts]) -> str:
-    """Return the first hardware class of a robot that is not of its world. What a simulator's plugin
-    does not load waits for ros2_control_node, and a real robot's controllers wait for it as well."""
+def _unsuited_hardware(robot: RewrittenRobot, node_set: Iterable[NodeFacts]) -> str:
+    """Return the first hardware class that does not suit a robot, real or simulated; or empty."""
+    # What a simulator's plugin does not load waits for ros2_control_node, as a real robot does.
     root: etree._Element = robot.member.inventory.document.root
     classes = hardware_classes(root)
     simulator = robot.spec.simulator
@@ -76,7 +74,7 @@ def _of_other_world(robot: RewrittenRobot, node_set: Iterable[NodeFacts]) -> str
     return next(filter(of_simulator, classes), "") if waiting else ""
 
 
-def _other_hardware(robot: RewrittenRobot, wrong: str) -> Finding:
+def _hardware_finding(robot: RewrittenRobot, wrong: str) -> Finding:
     real = robot.spec.simulator == REAL
     suits = suits_real if real else suits_simulator
     spec = robot.spec
@@ -97,7 +95,7 @@ def _other_hardware(robot: RewrittenRobot, wrong: str) -> Finding:
 
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
-    """Return whether its description is for a simulator, and nothing says that it runs in one."""
+    """Return whether it has parts for a simulator, and nothing says that it runs in one."""
     return evidence.unsimulated and not is_said(robot) and has_parts_for_simulator(robot.member)
 
 
@@ -109,7 +107,7 @@ def is_simulated(robot: RewrittenRobot) -> bool:
 
 
 def is_said(robot: RewrittenRobot) -> bool:
-    """Return whether the fleet file tells if a robot runs in a simulator."""
+    """Return whether the fleet file says if a robot runs in a simulator."""
     return bool(robot.spec.simulator or robot.spec.related_files.get("bridge"))
 
 
@@ -154,8 +152,7 @@ UNREAD_DRIVE = declare("MF844", "drive-of-unknown-code", NOTE, formats=("fleet",
 
 
 def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
-    """Yield each plugin that may move the robot and that is unknown, and each such class where a
-    node loads its ``hardware``."""
+    """Yield plugins that may move the robot and are unknown, and such ``hardware`` if loaded."""
     root: etree._Element = robot.member.source.root
     simulated = robot.spec.simulator != REAL
     asked = {HARDWARE: hardware or (simulated and loads_hardware(root)), PLUGIN: simulated}
@@ -168,14 +165,14 @@ def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
     alone = bool(unread) and not _has_drive(robot, parts)
     for it in unread:
         # Hardware without a joint is a sensor's.
-        why = _named(it, root) or ("is all that may move it" if alone and it.kind == PLUGIN else "")
+        why = _part(it, root) or ("is all that may move it" if alone and it.kind == PLUGIN else "")
         if why:
             who = f"robot {robot.spec.name!r}: {it.kind} {it.name}"
             message = f"{who} {why}, and its code is not known: whether it drives is not shown"
             yield at_robot(UNREAD_DRIVE, robot, message, SAY_IT)
 
 
-def _named(part: ActivePart, root: etree._Element) -> str:
+def _part(part: ActivePart, root: etree._Element) -> str:
     """Return the joint or link that a plugin or class names, for a message."""
     inner = part.element.iterdescendants()
     texts = (text for it in inner for text in (it.text or "", *map(str, it.attrib.values())))
@@ -196,7 +193,7 @@ def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
     topics, _ = bridged_topics({"": robot.member.inventory}, robot.topics.naming)
     return (
         # A plugin of a state tells where joints are, and moves none.
-        any(it.is_known and "joint " in _named(it, root) for it in parts if "state" not in it.name)
+        any(it.is_known and "joint " in _part(it, root) for it in parts if "state" not in it.name)
         or any(moves(it.code_name, it.type) for it in ends if it.role != PUBLISHES)
         or any(it.direction == DIRECTIONS["out"] for it in topics)
     )
@@ -243,14 +240,14 @@ def _without_world_systems(robot: RewrittenRobot) -> RewrittenRobot:
     document = robot.member.inventory.document
     own = [it.element for it in world_systems(robot.member.inventory)]
     # A description for Gazebo Classic keeps them: its worlds are not made here.
-    if not own or not all(_library(it).startswith(_GZ) for it in own):
+    if not own or not all(_library_of(it).startswith(_GZ) for it in own):
         return robot
     spans = Spans(document)
     edits = [Edit(spans.start_of(it), spans.end_of(it), b"", None) for it in own]
     data = b"".join(cut(document.source, sorted(edits)))
-    texts = {_library(it): spans.text_of(it).decode() for it in own}
+    texts = {_library_of(it): spans.text_of(it).decode() for it in own}
     return robot_with_text(robot, data)._replace(world_systems=texts, findings=said)
 
 
-def _library(plugin: _Element) -> str:
+def _library_of(plugin: _Element) -> str:
     return library_key((plugin.get("filename") or "").rpartition("/")[2])

@@ -76,12 +76,11 @@ class StartPoses(NamedTuple):
 
 
 def start_poses(plan: FleetPlan) -> StartPoses:
-    """Return for each robot with a pose: a transform from the world, amcl's initial pose, or both; or a
-    finding that says why its pose is not published."""
+    """Return for each pose a transform, amcl's pose or both, or why it is not published."""
     found: list[object] = []
     for robot in plan.robots:
         if robot.spec.pose is not None:
-            found += _place(plan, robot, robot.spec.pose)
+            found += _start_of_robot(plan, robot, robot.spec.pose)
     return StartPoses(
         tuple(it for it in found if isinstance(it, StaticTransform)),
         tuple(it for it in found if isinstance(it, InitialPose)),
@@ -94,15 +93,15 @@ def world_of(file: FleetFile, naming: Naming) -> str:
     return file.world or world_frame(naming)
 
 
-def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[object]:
+def _start_of_robot(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[object]:
     naming, name = plan.fleet.naming, robot.spec.namespace
     world = world_of(plan.file, naming)
     if not world:
         hint = "set world: or shared_frames:"
         what = "it has a pose, but no frame is shared by all robots"
-        yield _finding(NO_SHARED_FRAME, robot, what, hint)
+        yield _at_pose(NO_SHARED_FRAME, robot, what, hint)
         return
-    sent = _sent(plan, robot)
+    sent = _sent_transforms(plan, robot)
     shared = naming.shared_frames
     placing = {
         node: [it for it in edges if it.parent in shared and it.child not in shared]
@@ -119,11 +118,11 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         hint, level = "remove the pose: a second parent would make the frame jump", WARNING
         if is_simulated(robot):
             hint, level = "the simulator starts it there, which is enough", NOTE
-        yield _finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=level)
+        yield _at_pose(LOCALISED_ALREADY, robot, what, hint)._replace(level=level)
         return
     if held := placing[""]:
         if pose != ORIGIN:
-            yield _on_world(robot, held[0])
+            yield _fixed_to_world_finding(robot, held[0])
         return
     every = [edge for own in sent.values() for edge in own]
     children = {edge.child for edge in every if edge.parent != edge.child}
@@ -133,11 +132,11 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
     if len(roots) != 1:
         frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
         what = f"its pose is not published, because it has {frames} instead of one"
-        yield _finding(NO_SINGLE_ROOT, robot, what, "connect them by a joint")
+        yield _at_pose(NO_SINGLE_ROOT, robot, what, "connect them by a joint")
         return
     if own := _odometry_sender(plan, robot):
         what = f"its pose is not published, because {own} may send where its base is"
-        yield _finding(OWN_ODOMETRY, robot, what, "describe it in a file of nodes, with sends:")
+        yield _at_pose(OWN_ODOMETRY, robot, what, "describe it in a file of nodes, with sends:")
         return
     local = AMCL in sent
     if local:
@@ -161,7 +160,7 @@ def initial_pose(pose: Pose) -> dict[str, object]:
     return {"set_initial_pose": True, **values}
 
 
-def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
+def _sent_transforms(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
     """Return the transforms of each node of a robot; the description's tree has an empty name."""
     name, inventory = robot.spec.namespace, robot.member.inventory
     sent = {node: [*edges] for (own, node), edges in plan.fleet.edges.items() if own == name}
@@ -186,7 +185,7 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
 
 
 def _odometry_sender(plan: FleetPlan, robot: RewrittenRobot) -> str:
-    """Return the beginning of a sentence: an unknown node with an odometry frame of its own; or ""."""
+    """Return the start of a message about an unknown node with an odometry frame, or ""."""
     described = {it.name for it in plan.fleet.facts}
     own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
     frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}
@@ -200,7 +199,7 @@ def _odometry_sender(plan: FleetPlan, robot: RewrittenRobot) -> str:
     return ""
 
 
-def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
+def _fixed_to_world_finding(robot: RewrittenRobot, held: Edge) -> Finding:
     """Return the finding about a pose for a link fixed to the world, which only a simulator uses."""
     simulated = robot.spec.simulator not in ("", REAL)
     what = (
@@ -213,7 +212,8 @@ def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
     return at_robot(POSE_ON_WORLD, robot, f"robot {robot.spec.name!r}: {what}", hint, level)
 
 
-def _finding(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding:
+def _at_pose(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding:
+    """Return a finding at the robot whose pose it is about."""
     return at_robot(rule, robot, f"robot {robot.spec.name!r}: {what}", hint)
 
 
@@ -222,8 +222,7 @@ POSE_NODE = NodeFacts(START_POSE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC,
 
 
 def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
-    """Return the fleet with a static transform publisher for each robot that needs one; why a pose
-    is not published is among the problems of its table."""
+    """Return the fleet with the transform publishers of poses; problems are in its table."""
     poses = [start_poses(one) for one in split_per_robot(plan)]
     held = [it for one in poses for it in one.transforms]
     problems = tuple(said_once(plan, (it for one in poses for it in one.findings)))

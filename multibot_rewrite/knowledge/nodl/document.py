@@ -119,12 +119,12 @@ def parse(text: str, file: str) -> Document:
         # One endpoint for two of a name, as two publishers of a node may have.
         found: dict[str, Endpoint] = {}
         for entry in _listed_entries(top, section):
-            end = _endpoint(entry, section, kind, role)
+            end = _read_endpoint(entry, section, kind, role)
             first = found.setdefault(end.name, end)
             if end.type not in (first.type, *first.also):
                 found[end.name] = first._replace(also=(*first.also, end.type))
         endpoints += found.values()
-    parameters = tuple(_parameters(table_of(top, "parameters")))
+    parameters = tuple(_read_parameters(table_of(top, "parameters")))
     includes = []
     for entry in _listed_entries(top, "include"):
         ref = word_of(table(entry, "an include", ("ref",)), "ref")
@@ -140,7 +140,7 @@ def _listed_entries(top: Mapping[str, YamlItem], key: str) -> tuple[YamlItem, ..
     return entries_of(top, key)
 
 
-def _endpoint(item: YamlItem, section: str, kind: str, role: str) -> Endpoint:
+def _read_endpoint(item: YamlItem, section: str, kind: str, role: str) -> Endpoint:
     keys = table(item, f"an entry of {section}", ENDPOINT_KEYS[kind])
     if not keys:
         wrong(item, f"an entry of {section} is empty; write name and type")
@@ -185,7 +185,7 @@ def _check_qos(item: YamlItem) -> None:
         wrong(keys["depth"], "depth is 0; write 1 or more")
 
 
-def _parameters(found: Mapping[str, YamlItem]) -> Iterator[Parameter]:
+def _read_parameters(found: Mapping[str, YamlItem]) -> Iterator[Parameter]:
     for name, item in found.items():
         keys = table(item, f"parameter {name!r}", PARAMETER_KEYS)
         if "type" not in keys:

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where NoDL documents are (in the ament index, in files and folders that a user names), and what is
-known of nodes from them.
+"""The NoDL documents in the ament index, in files and in folders, and what they say of nodes.
 
 A document does not say which node it is for; its place does. In the ament index it is the resource
 ``nodl/<package>__<name>`` (ament_nodl_register.cmake, ament_resolver.py of ros-tooling/nodl).
 
 It cannot say everything: conditions, helper nodes, which names an image_transport adds, the launch
-file's own rules. These stay from the library where it knows the same endpoint.
-"""
+file's own rules. These stay from the library where it knows the same endpoint."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -51,9 +49,10 @@ NONE = Interfaces({}, ())
 
 
 def find_interfaces(paths: Sequence[str]) -> Interfaces:
-    """Return the documents below ``paths`` and those of installed packages, or none for ``none``. A
-    path is a file, a folder of files or a folder where packages are installed. Raises
-    UsageError."""
+    """Return the documents below ``paths`` and those of installed packages; raises UsageError.
+
+    A path is a file, a folder of files or a folder where packages are installed; with ``none``
+    there are no documents at all."""
     if tuple(paths) == (NO_DOCUMENTS,):
         return NONE
     given: dict[Identity, str] = {}
@@ -79,7 +78,9 @@ def _documents_below(path: str) -> Iterator[tuple[Identity, str]]:
     if not os.path.isdir(path):
         raise UsageError(f"{path}: does not exist; name a NoDL file or a folder of them")
     index = os.path.join(path, INDEX)
-    found = sorted(_documents_in_index(index) if os.path.isdir(index) else _in_folder(path))
+    found = sorted(
+        _documents_in_index(index) if os.path.isdir(index) else _documents_in_folder(path)
+    )
     if not found:
         raise UsageError(f"{path}: there is no NoDL file (*.nodl.yaml) in this folder")
     yield from found
@@ -92,7 +93,7 @@ def _documents_in_index(index: str) -> Iterator[tuple[Identity, str]]:
             yield Identity(package, name), os.path.join(index, key)
 
 
-def _in_folder(folder: str) -> Iterator[tuple[Identity, str]]:
+def _documents_in_folder(folder: str) -> Iterator[tuple[Identity, str]]:
     seen = 0
     for place, folders, names in os.walk(folder):
         folders[:] = (it for it in folders if not it.startswith("."))
@@ -104,7 +105,7 @@ def _in_folder(folder: str) -> Iterator[tuple[Identity, str]]:
 
 
 def _identity(path: str, folder: str) -> Identity:
-    """Return the node by the file's name, the folders above it, and the package that it is in."""
+    """Return the node of a document by its file name, the folders above and the package it is in."""
     name = os.path.basename(path)
     ending = next((it for it in (*SUFFIXES, os.path.splitext(name)[1]) if name.endswith(it)), "")
     stem = name.removesuffix(ending)
@@ -168,6 +169,7 @@ def load(path: str, interfaces: Interfaces) -> Document:
 
 
 def _with_included(path: str, interfaces: Interfaces, seen: dict[str, str]) -> Iterator[Document]:
+    """Yield a document and those that it includes; raises UsageError."""
     try:
         document = parse(read_text(path), path)
     except OSError as error:
@@ -213,7 +215,7 @@ _FRAME = lazy_compile(r"(?:.*[._])?frame(?:_id)?")
 
 
 class _Slot(NamedTuple):
-    """What an endpoint is called from outside, for a node in the root namespace."""
+    """The key of an endpoint: what it is called from outside, for a node in the root namespace."""
 
     kind: str
     role: str
@@ -221,8 +223,7 @@ class _Slot(NamedTuple):
 
 
 class NodeKnowledge(NamedTuple):
-    """What is known of nodes: a library, NoDL documents above it, and above both the nodes that the
-    user's own file describes (``own``, by name), which the library has."""
+    """A library, NoDL documents, which come before it, and the user's ``own`` nodes, before both."""
 
     library: NodeLibrary
     interfaces: Interfaces
@@ -230,13 +231,12 @@ class NodeKnowledge(NamedTuple):
 
 
 def nodes_of(known: NodeKnowledge, node_set: str) -> Iterator[NodeFacts]:
-    """Yield the nodes of a node set, each by its NoDL document if there is one. A name that is no
-    node set of the library may be that of a document. Raises UsageError."""
+    """Yield the nodes of a node set or NoDL document, as documents have them; raises UsageError."""
     library = known.library
     alone = (
         None
         if node_set in library.node_sets or node_set in library.nodes
-        else _alone(known, node_set)
+        else _node_of_document(known, node_set)
     )
     yield from [alone] if alone else (declared(known, it) for it in nodes_of_set(library, node_set))
 
@@ -254,8 +254,8 @@ def declared(known: NodeKnowledge, node: NodeFacts) -> NodeFacts:
     return _merged_node(node, usual, load(file, known.interfaces), known.library.parts)
 
 
-def _alone(known: NodeKnowledge, name: str) -> NodeFacts | None:
-    """Return a node that only a document describes; its name may be given as ``package/name``."""
+def _node_of_document(known: NodeKnowledge, name: str) -> NodeFacts | None:
+    """Return a node that only a document describes; its name may be ``package/name``."""
     found = [it for it in sorted(identities(known.interfaces)) if name in (it.name, shown(it))]
     if len(found) > 1:
         both = " or ".join(map(shown, found))
@@ -270,14 +270,15 @@ def _alone(known: NodeKnowledge, name: str) -> NodeFacts | None:
 def _merged_node(
     node: NodeFacts, usual: str, document: Document, parts: Mapping[str, tuple[Endpoint, ...]]
 ) -> NodeFacts:
-    ours = {_slot(end, usual): end for end in reversed(node.endpoints)}
+    """Return a node with its document's endpoints; what only the library has is conditional."""
+    ours = {_key_of(end, usual): end for end in reversed(node.endpoints)}
     # What ROS gives every node is not the node's own.
     always = {(it.role, _last_word(it)) for it in (*parts.get(EVERY_NODE, ()), TYPE_DESCRIPTION)}
     own = [end for end in document.endpoints if (end.role, _last_word(end)) not in always]
-    theirs = {_slot(end, usual): end for end in _folded(own)}
-    ends = [_both(end, ours.get(slot)) for slot, end in theirs.items()]
+    theirs = {_key_of(end, usual): end for end in _folded(own)}
+    ends = [_merged_endpoint(end, ours.get(slot)) for slot, end in theirs.items()]
     for end in node.endpoints:
-        if _slot(end, usual) not in theirs:
+        if _key_of(end, usual) not in theirs:
             ends.append(end._replace(when=end.when or NOT_IN_NODL))
     frames = tuple(_frames(node, document.parameters))
     return node._replace(endpoints=tuple(ends), frames=frames, interface=document.file)
@@ -292,7 +293,8 @@ def _frames(node: NodeFacts, parameters: Iterable[Parameter]) -> Iterator[FrameP
     yield from (FrameParameter(*it) for it in given.items() if _FRAME.fullmatch(it[0]))
 
 
-def _slot(end: Endpoint, node: str) -> _Slot:
+def _key_of(end: Endpoint, node: str) -> _Slot:
+    """Return kind, role and full name of an endpoint of this node."""
     above, _, own = node.rpartition("/")
     name = end.name if "<" in end.name else expand(end.name, f"/{above}", own)
     return _Slot(end.kind, end.role, name)
@@ -319,7 +321,7 @@ def _folded(ends: Iterable[Endpoint]) -> Iterator[Endpoint]:
         yield end._replace(transport=(end.role, end.name) in images, helper=heard)
 
 
-def _both(end: Endpoint, ours: Endpoint | None) -> Endpoint:
+def _merged_endpoint(end: Endpoint, ours: Endpoint | None) -> Endpoint:
     """Return the endpoint of a document with what the library knows beyond it."""
     if ours is None:
         return end

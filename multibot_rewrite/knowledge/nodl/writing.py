@@ -63,7 +63,7 @@ def document_of(
         read = parse(text, file_name(node)).endpoints
     except UsageError as error:
         raise ProofError(f"the document of {node} cannot be read back: {error}") from None
-    if _names(read) != _names(fitting):
+    if _names_and_types(read) != _names_and_types(fitting):
         raise ProofError(f"the document of {node} is read back differently")
     left = [f"{it.role} {it.name}" for it in written if not _fits(it)]
     return NodlFile(node, text, tuple(dict.fromkeys(left)))
@@ -75,5 +75,5 @@ def _fits(end: Endpoint) -> bool:
     return bool(_NAME.fullmatch(end.name) and _TYPE.fullmatch(end.type) and group in end.type)
 
 
-def _names(ends: Iterable[Endpoint]) -> set[tuple[str, str, str, str]]:
+def _names_and_types(ends: Iterable[Endpoint]) -> set[tuple[str, str, str, str]]:
     return {(it.kind, it.role, it.name, type_) for it in ends for type_ in (it.type, *it.also)}

@@ -13,7 +13,7 @@ from multibot_rewrite.base.bounded import load_json, read_bytes
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.outside import Asked, Question, answer_now, digest
-from multibot_rewrite.description.rewriters.plugin_definitions.installed import installed
+from multibot_rewrite.description.rewriters.installed import installed
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.version import __version__
 
@@ -41,10 +41,11 @@ def read_shard(path: str) -> dict[str, Entry]:
             return {}
         table, entries = load_json(body)
         asked = [
-            (Question(name, _tuples(args), _tuples(named)), it) for name, args, named, it in table
+            (Question(name, _from_json(args), _from_json(named)), it)
+            for name, args, named, it in table
         ]
         return {
-            key: Entry(_tuples(value), dict(asked[number] for number in numbers))
+            key: Entry(_from_json(value), dict(asked[number] for number in numbers))
             for key, (value, numbers) in entries.items()
         }
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
@@ -101,11 +102,11 @@ def bound(folder: str) -> None:
                 os.unlink(path)
 
 
-def _tuples(value: Any) -> Any:
-    """Return lists of JSON as the tuples that they were, and maps as bytes."""
+def _from_json(value: Any) -> Any:
+    """Return a value read from JSON with tuples for its lists, and bytes for its maps."""
     if isinstance(value, dict):
         return value[_BYTES].encode(_BYTES)
-    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+    return tuple(map(_from_json, value)) if isinstance(value, list) else value
 
 
 def cache_folder() -> str:
@@ -140,6 +141,7 @@ class Cache:
         return entry.value if entry and holds else None
 
     def _answer(self, question: Question) -> str:
+        """Return the digest of the answer to a question now, asked once; "" if it has none."""
         if question not in self.answers:
             try:
                 self.answers[question] = answer_now(question)
@@ -180,7 +182,7 @@ def findings_from(value: Any) -> list[Finding] | None:
 
 
 def among_written(settings: Settings, path: str = "") -> tuple[Any, ...]:
-    """Return what the settings know of the other files; with a ``path`` only what counts for it."""
+    """Return what the settings know of the other files, to be kept; with a ``path`` only its part."""
     part = settings.included & {path} if path else settings.included
     return sorted(part), settings.urdfs, settings.elsewhere
 
@@ -190,7 +192,7 @@ def among_from(value: Any, settings: Settings) -> Settings | None:
     from multibot_rewrite.description.sources.known_arguments import KnownArguments
 
     try:
-        part, urdfs, known = _tuples(value)
+        part, urdfs, known = _from_json(value)
         elsewhere = known and KnownArguments._make(known)
         pairs = tuple((name, path) for name, path in urdfs)
         return settings._replace(included=frozenset(part), urdfs=pairs, elsewhere=elsewhere)
@@ -208,7 +210,7 @@ def identity(settings: Settings) -> str:
     where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
     specs = filter(None, map(find_spec, LIBRARIES))
     folders = filter(None, (_HERE, *(os.path.dirname(it.origin or "") for it in specs)))
-    programs = sorted(it for folder in folders for it in _states(folder))
+    programs = sorted(it for folder in folders for it in _file_states(folder))
     paths = [*(it.path for it in installed()), *settings.definitions]
     # What is read beyond what is built in.
     definitions = [(path, digest(read_bytes(path))) for path in paths]
@@ -226,11 +228,11 @@ def plain(value: object) -> object:
     return value
 
 
-def _states(folder: str) -> Iterator[tuple[str, int, int]]:
+def _file_states(folder: str) -> Iterator[tuple[str, int, int]]:
     with os.scandir(folder) as found:
         for it in found:
             if not it.is_dir(follow_symlinks=False):
                 of = it.stat()
                 yield it.path, of.st_mtime_ns, of.st_size
             elif it.name != "__pycache__":
-                yield from _states(it.path)
+                yield from _file_states(it.path)

@@ -63,9 +63,10 @@ def beyond(
     path: str,
     linted: Collection[str] | None = None,
 ) -> tuple[list[Finding], int]:
-    """Return the findings that the baseline at ``path`` lacks, and how many of its findings are
-    gone. ``linted`` are the files that were checked, None for all: findings of an existing file
-    that was not checked are not gone."""
+    """Return the findings that the baseline at ``path`` lacks, and how many of its own are gone.
+
+    ``linted`` are the files that were checked, None for all: findings of an existing file that was not
+    checked are not gone."""
     left = Counter(baseline)
     new = []
     for finding in findings:
@@ -98,6 +99,7 @@ def baseline_text(findings: Iterable[Finding], path: str) -> bytes:
 
 
 def _key(finding: Finding, path: str) -> Key:
+    """Return what a finding is recognised by in the baseline at ``path``."""
     message = _LINE.sub("line N", finding.message)
     return Key(finding.code, _relative_path(finding.file, path), message)
 

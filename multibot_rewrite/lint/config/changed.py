@@ -37,22 +37,22 @@ class Changes(NamedTuple):
 
 
 def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
-    """Return those of ``paths`` that changed since HEAD and ``rev`` had a commit in common: in a
-    commit since then or in the working tree, not in git, or a xacro that includes such a file. The
-    repository is that of the working directory; what is outside of it, or ignored, counts as
+    """Return those of ``paths`` that changed since HEAD and ``rev`` had a commit in common.
+
+    That is in a commit since then or in the working tree, not in git, or a xacro that includes such a
+    file. The repository is that of the working directory; what is outside of it, or ignored, counts as
     changed. Raises UsageError if git fails."""
     if not rev or rev.startswith("-") or "\0" in rev:
         raise UsageError(f"{rev!r} is not a revision; name a branch, a tag or a commit")
     top = os.fsdecode(_git(".", "rev-parse", "--show-toplevel").removesuffix(b"\n"))
-    changed, others = _differing(top, _base(rev))
-    changes = Changes(top, changed | others, _names(_git(top, "ls-files", "-z")), others)
-    touched = _touched(paths, changes)
+    changed, others = _differing(top, _common_commit(rev))
+    changes = Changes(top, changed | others, _listed_names(_git(top, "ls-files", "-z")), others)
+    touched = _changed_by_path(paths, changes)
     return [it for it in paths if touched[it]]
 
 
 def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
-    """Return what differs from a commit, in submodules as well, and what git does not have. A
-    submodule is asked by itself: git would run its filters."""
+    """Return what differs from a commit, in submodules too, and the files that git does not have."""
     diff = [
         "diff",
         "--name-only",
@@ -61,8 +61,8 @@ def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
         "--no-ext-diff",
         "--ignore-submodules=dirty",
     ]
-    changed = _names(_git(top, *diff, base, "--"))
-    others = _names(_git(top, "ls-files", "-z", "--others", "--exclude-standard"))
+    changed = _listed_names(_git(top, *diff, base, "--"))
+    others = _listed_names(_git(top, "ls-files", "-z", "--others", "--exclude-standard"))
     inner = {it for it in _submodules(top) if any(_differing(os.path.join(top, it), "HEAD"))}
     return changed | inner, others
 
@@ -75,7 +75,7 @@ def _submodules(top: str) -> Iterator[str]:
             yield name
 
 
-def _base(rev: str) -> str:
+def _common_commit(rev: str) -> str:
     """Return the last commit that HEAD and the revision have in common."""
     try:
         _git(".", "rev-parse", "--verify", "--quiet", f"{rev}^{{commit}}")
@@ -91,6 +91,7 @@ def _base(rev: str) -> str:
 
 
 def _git(where: str, *words: str) -> bytes:
+    """Return what git prints in a folder; raises UsageError if it fails."""
     try:
         return git(where, *words)
     except OSError as error:
@@ -100,14 +101,14 @@ def _git(where: str, *words: str) -> bytes:
         raise UsageError(f"git reports: {lines[0].removeprefix('fatal: ')}") from None
 
 
-def _names(listed: bytes) -> frozenset[str]:
+def _listed_names(listed: bytes) -> frozenset[str]:
     """Return the names in a list with zeros between them; a nested repository ends in a slash."""
     return frozenset(os.fsdecode(it).rstrip("/") for it in listed.split(b"\0") if it)
 
 
-def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
+def _changed_by_path(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
     """Return which files changed, or read one that did; included files are checked, too."""
-    reads = _reads(paths, changes)
+    reads = _names_read(paths, changes)
     changed_by_path = {path: _is_changed(path, changes) for path in reads}
     names = {os.path.basename(path) for path, it in changed_by_path.items() if it}
     for path in changes.changed:  # a nested repository changed as a whole
@@ -136,7 +137,7 @@ def _is_changed(path: str, changes: Changes) -> bool:
     return False
 
 
-def _reads(paths: Iterable[str], changes: Changes) -> dict[str, tuple[str, ...]]:
+def _names_read(paths: Iterable[str], changes: Changes) -> dict[str, tuple[str, ...]]:
     """Return patterns for the names of what each file reads, also for all that they include."""
     every = changes.tracked | changes.untracked
     there = lists_by_key((os.path.basename(it), os.path.join(changes.top, it)) for it in every)
@@ -145,13 +146,13 @@ def _reads(paths: Iterable[str], changes: Changes) -> dict[str, tuple[str, ...]]
     while todo:
         path = todo.pop()
         if path not in found:
-            asked = list(_includes(path))
+            asked = list(_include_patterns(path))
             found[path] = tuple(os.path.basename(it) for it in asked)
-            todo += _located(path, asked, there)
+            todo += _files_called(path, asked, there)
     return found
 
 
-def _includes(path: str) -> Iterator[str]:
+def _include_patterns(path: str) -> Iterator[str]:
     """Yield patterns for the files that a file reads, as far as its text shows it."""
     if path.endswith(_BESIDE[0]):
         yield from _BESIDE[1]
@@ -168,7 +169,7 @@ def _includes(path: str) -> Iterator[str]:
             yield os.fsdecode(_UNKNOWN.sub(b"*", name[1:-1]))
 
 
-def _located(path: str, asked: Iterable[str], there: dict[str, list[str]]) -> Iterator[str]:
+def _files_called(path: str, asked: Iterable[str], there: dict[str, list[str]]) -> Iterator[str]:
     """Yield files of these names, wherever they are; git may not have the one next to the file."""
     for it in asked:
         name = os.path.basename(it)

@@ -44,31 +44,32 @@ def after_comments(
     sources: Mapping[str, bytes],
     settings: Settings,
 ) -> list[Finding]:
-    """Return the findings that no comment suppresses, and those about comments; ``codes`` are all
-    that were found. The first of ``sources`` is the file that is linted, the others are those it
-    includes."""
-    comments = [it for file, source in sources.items() for it in _comments(file, source)]
-    left, used = _apply(findings, comments)
+    """Return the findings that no comment suppresses, and those about comments.
+
+    ``codes`` are all that were found. The first of ``sources`` is the file that is linted, the
+    others are those it includes."""
+    comments = [it for file, source in sources.items() for it in _lint_comments(file, source)]
+    left, used = _unsuppressed(findings, comments)
     faults = ((it, fault) for it in comments for fault in it.it.faults)
     broken = (
         Finding(BROKEN, "", what.message, what.hint, it.file, *locate(it.source, what.start))
         for it, what in faults
     )
-    left += _selected(broken, BROKEN, settings)
+    left += _with_level(broken, BROKEN, settings)
     if _UNFINISHED.isdisjoint(codes):
         own = [it for it in comments if it.file == next(iter(sources)) and _is_whole(it, settings)]
-        left += _selected(_unused_comments(own, used, settings), UNUSED, settings)
+        left += _with_level(_unused_comments(own, used, settings), UNUSED, settings)
     return left
 
 
-def _comments(file: str, source: bytes) -> Iterator[Comment]:
+def _lint_comments(file: str, source: bytes) -> Iterator[Comment]:
     for it in read_directives(source) if MARK in source else ():
         first, last = (locate(source, offset)[0] for offset in it.lines)
         span = it.element and (locate(source, it.element[0]), locate(source, it.element[1]))
         yield Comment(file, source, it, (first, last), span)
 
 
-def _apply(
+def _unsuppressed(
     findings: Iterable[Finding], comments: Iterable[Comment]
 ) -> tuple[list[Finding], set[tuple[str, int]]]:
     """Return the findings that are left, and the codes that suppressed one, by file and offset."""
@@ -86,7 +87,7 @@ def _reaches(comment: Comment, finding: Finding) -> bool:
     """Return whether a comment reaches a finding; a comment at a macro reaches those in its output."""
     if comment.it.word == IGNORE_FILE:
         return file_of(finding) == comment.file
-    if finding.file == comment.file and _comment_holds(comment, (finding.line, finding.column)):
+    if finding.file == comment.file and _covers(comment, (finding.line, finding.column)):
         return True
     spans = [comment.lines]
     if comment.element:
@@ -96,13 +97,15 @@ def _reaches(comment: Comment, finding: Finding) -> bool:
     return any(first <= line <= last for line in lines for first, last in spans)
 
 
-def _comment_holds(comment: Comment, at: Position) -> bool:
+def _covers(comment: Comment, at: Position) -> bool:
+    """Return whether a position is on the comment's lines or in the element it is about."""
     first, last = comment.lines
     element = comment.element
     return first <= at[0] <= last or (element is not None and element[0] <= at < element[1])
 
 
-def _selected(found: Iterable[Finding], code: str, settings: Settings) -> Iterator[Finding]:
+def _with_level(found: Iterable[Finding], code: str, settings: Settings) -> Iterator[Finding]:
+    """Yield findings of a rule about comments, with its level, if the rule is on in their file."""
     if not is_on(settings, code):
         return
     level = level_of(settings, code, RULES[code].level)
@@ -112,7 +115,7 @@ def _selected(found: Iterable[Finding], code: str, settings: Settings) -> Iterat
 
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:
-    """Return whether its file was expanded, and each expansion has what the comment is about."""
+    """Return whether every expansion of the comment's file has what the comment is about."""
     if comment.file in settings.included:
         return False
     if not comment.file.endswith(".xacro"):
@@ -126,7 +129,9 @@ def _unused_comments(
     for comment in comments:
         codes = comment.it.codes
         idle = [it for it in codes if (comment.file, it.start) not in used]
-        idle = [it for it in idle if comment.it.idle or _is_asked(it.text, comment.file, settings)]
+        idle = [
+            it for it in idle if comment.it.idle or _is_checked(it.text, comment.file, settings)
+        ]
         for code, edits in zip(idle, _removals(comment, idle), strict=True):
             line, column = locate(comment.source, code.start)
             message = f"this comment suppresses no {code.text} finding"
@@ -134,7 +139,7 @@ def _unused_comments(
             yield Finding(UNUSED, "", message, hint, comment.file, line, column, edits=edits)
 
 
-def _is_asked(code: str, file: str, settings: Settings) -> bool:
+def _is_checked(code: str, file: str, settings: Settings) -> bool:
     """Return whether a rule is on in that file, with its settings and without other files."""
     rule = RULES[code]
     possible = not rule.page.beside and all(getattr(settings, it, True) for it in rule.options)

@@ -46,8 +46,9 @@ class Configured(NamedTuple):
 
 
 def configured(near: str, file: str | None) -> Configured:
-    """Return the configuration in ``file`` or, without one, the nearest above ``near``. In one
-    folder a urdf-lint.toml comes before a pyproject.toml, which counts if it has a table
+    """Return the configuration in ``file`` or, without one, the nearest above ``near``.
+
+    In one folder a urdf-lint.toml comes before a pyproject.toml, which counts if it has a table
     ``[tool.urdf-lint]``. Raises UsageError, naming the file, for anything that is wrong in it."""
     path = file or next(_configurations_above(near), "")
     result = _configured_by(path, _table(path)) if path else Configured()
@@ -65,21 +66,23 @@ def _configurations_above(near: str) -> Iterator[str]:
             yield own
         # Parsing is slow compared with the rest of a start, and most projects do not have the table.
         data = config.read(project) if os.path.isfile(project) else b""
-        if MARK in data and _in_project(project, data) is not None:
+        if MARK in data and _project_table(project, data) is not None:
             yield project
 
 
 def _table(path: str) -> Mapping[str, object]:
+    """Return the keys and values of a configuration file."""
     data = config.read(path)
     if os.path.basename(path) != PROJECT:
         return config.parse(path, data)
-    table = _in_project(path, data)
+    table = _project_table(path, data)
     if table is None:
         raise UsageError(f"{path}: there is no table [tool.{TABLE}] in it")
     return table
 
 
-def _in_project(path: str, data: bytes) -> Mapping[str, object] | None:
+def _project_table(path: str, data: bytes) -> Mapping[str, object] | None:
+    """Return the lint's table in a pyproject.toml; None without one."""
     tool = config.parse(path, data).get("tool", {})
     if not isinstance(tool, dict):
         return None
@@ -92,6 +95,7 @@ def _in_project(path: str, data: bytes) -> Mapping[str, object] | None:
 
 
 def _configured_by(path: str, table: Mapping[str, object]) -> Configured:
+    """Return the configuration that the keys and values of a file make; raises UsageError."""
     folder = os.path.dirname(os.path.abspath(path))
     values: dict[str, Any] = {}
     for key, value in table.items():
@@ -109,13 +113,13 @@ def _configured_by(path: str, table: Mapping[str, object]) -> Configured:
     values["readable"] = tuple(it for it, at in roots if os.path.commonpath((at, whole)) == whole)
     result = Configured(Settings(**values), file=path, **own)
     try:
-        return _named(result, naming_options)
+        return _with_naming(result, naming_options)
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from None
 
 
-def _named(it: Configured, naming_options: Mapping[str, Any]) -> Configured:
-    """Return the configuration with other options for the naming."""
+def _with_naming(it: Configured, naming_options: Mapping[str, Any]) -> Configured:
+    """Return the configuration with these options of the naming in place of its own."""
     if not naming_options:
         return it
     naming = {**it.naming, **naming_options}
@@ -130,6 +134,7 @@ def is_excluded(path: str, it: Configured) -> bool:
 
 def with_options(it: Configured, **given: Any) -> Configured:
     """Return a configuration with the options of the command line; None and empty mean not given.
+
     ``ignore``, ``definitions``, ``roots`` and ``arguments`` (pairs) add to it; all else replaces it.
     Codes in ``select`` are on, whatever the configuration says about exactly these codes."""
     options = {name: value for name, value in given.items() if value not in (None, (), "")}
@@ -159,4 +164,4 @@ def with_options(it: Configured, **given: Any) -> Configured:
         if name in options:
             options[name] = (*getattr(settings, name), *options[name])
     settings = settings._replace(**options)
-    return _named(it._replace(settings=settings, **own), naming_options)
+    return _with_naming(it._replace(settings=settings, **own), naming_options)

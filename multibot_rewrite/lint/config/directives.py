@@ -92,14 +92,15 @@ def read_directives(source: bytes) -> list[Directive]:
     for part, element in zip(parts, below, strict=True):
         if part.kind == _COMMENT and (it := _directive(source, part)):
             alone = it.word == IGNORE and _has_its_lines(source, part, last)
-            it = _in_place(it._replace(element=element if alone else None), tags)
+            it = _checked_place(it._replace(element=element if alone else None), tags)
             idle = it.word == IGNORE and _is_idle(it, tags, before)
-            found.append(it._replace(sometimes=_meets(it, reached), idle=idle))
+            found.append(it._replace(sometimes=_overlaps(it, reached), idle=idle))
         before, last = part.kind if part.kind != _COMMENT else before, part.end
     return found
 
 
 def _parts(source: bytes) -> Iterator[TagPart]:
+    """Yield the tags, comments and other markup of a file."""
     for found in _PART.finditer(source):
         start, end, name = found.start(), found.end(), found[1]
         if name is None:
@@ -126,6 +127,7 @@ def _element_ends(parts: Sequence[TagPart]) -> dict[int, int]:
 
 
 def _directive(source: bytes, part: TagPart) -> Directive | None:
+    """Return the comment for the lint that a part of a file is, or None."""
     comment = _DIRECTIVE.fullmatch(source, part.start, part.end)
     if comment is None:
         return None
@@ -154,7 +156,7 @@ def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], lis
     faults: list[DirectiveFault] = []
     for found in _WORD.finditer(source, comment.start(3), end):
         text = found[0].decode("utf-8", "replace")
-        if fault := _fault(text, found.start()):
+        if fault := _code_fault(text, found.start()):
             faults.append(fault)
         else:
             codes.append(CodeName(text, *found.span()))
@@ -165,7 +167,8 @@ def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], lis
     return codes, faults
 
 
-def _fault(text: str, start: int) -> DirectiveFault | None:
+def _code_fault(text: str, start: int) -> DirectiveFault | None:
+    """Return why a comment cannot suppress a code, or None."""
     if text in ALWAYS_REPORTED:
         return DirectiveFault(start, f"no comment can suppress {text}", "remove it")
     if text in RULES:
@@ -205,8 +208,8 @@ def _has_its_lines(source: bytes, comment: TagPart, last: int) -> bool:
     return begins and _LINE_END.match(source, comment.end) is not None
 
 
-def _in_place(it: Directive, tags: Sequence[TagPart]) -> Directive:
-    """Return the comment; an ignore-file after the root's first child has no codes but a fault."""
+def _checked_place(it: Directive, tags: Sequence[TagPart]) -> Directive:
+    """Return the comment; an ignore-file below the root's first child gets a fault and no codes."""
     if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
         return it
     late = DirectiveFault(
@@ -222,7 +225,7 @@ def _is_idle(it: Directive, tags: Sequence[TagPart], before: int) -> bool:
     return not it.element and not on_the_lines and before != _OPEN
 
 
-def _meets(it: Directive, reached: tuple[list[int], list[int]]) -> bool:
+def _overlaps(it: Directive, reached: tuple[list[int], list[int]]) -> bool:
     """Return whether what the comment is about is in one of the spans, at least in part."""
     starts, ends = reached
     if it.word == IGNORE_FILE:

@@ -63,15 +63,15 @@ def find_lint_codes(words: Sequence[str], where: str) -> tuple[str, ...]:
     return find_codes(words, where, RULES)
 
 
-def _levels(given: KeyValue) -> dict[str, str]:
+def _levels_by_code(given: KeyValue) -> dict[str, str]:
     levels = {}
     for word, it in _table_of(given):
         (code,) = find_lint_codes((word,), given.where)
-        levels[code] = _one_of(it, (*LEVELS, OFF))
+        levels[code] = _allowed_text(it, (*LEVELS, OFF))
     return levels
 
 
-def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
+def _allowed_text(given: KeyValue, allowed: Sequence[str]) -> str:
     word = _non_empty_text(given)
     if word not in allowed:
         raise UsageError(f"{given.where} is {word!r}, use one of {', '.join(allowed)}")
@@ -80,7 +80,7 @@ def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
 
 def targets(given: KeyValue) -> tuple[str, ...]:
     """Return the targets that a key lists; raises for an unknown one."""
-    return tuple(_one_of(given._replace(value=it), TARGETS) for it in _texts(given))
+    return tuple(_allowed_text(given._replace(value=it), TARGETS) for it in _texts(given))
 
 
 def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
@@ -91,19 +91,19 @@ def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
         raise UsageError(f"{where}: {error}") from None
 
 
-def _path(given: KeyValue) -> str:
+def _path_from_folder(given: KeyValue) -> str:
     """Return a path from the folder of its configuration file; raises UsageError for another value."""
     return os.path.join(given.folder, _non_empty_text(given))
 
 
-def _file(given: KeyValue) -> str:
-    path = _path(given)
+def _existing_file(given: KeyValue) -> str:
+    path = _path_from_folder(given)
     if not os.path.isfile(path):
         raise UsageError(f"{given.where}: no file {given.value!r} in {given.folder}")
     return path
 
 
-def _folders(given: KeyValue) -> tuple[str, ...]:
+def _existing_folders(given: KeyValue) -> tuple[str, ...]:
     paths = tuple(os.path.join(given.folder, it) for it in _texts(given))
     wrong = next((it for it in paths if not os.path.isdir(it)), None)
     if wrong is not None:
@@ -120,7 +120,7 @@ def _seconds(given: KeyValue) -> float:
     return float(value)
 
 
-def _per_file(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
+def _codes_by_pattern(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
     return tuple(
         (pattern, _codes(it)) for key, it in _table_of(given) for pattern in _patterns(key, given)
     )
@@ -162,8 +162,8 @@ def _argument(given: KeyValue) -> str:
 READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "select": _codes,
     "ignore": _codes,
-    "per-file-ignores": _per_file,
-    "levels": _levels,
+    "per-file-ignores": _codes_by_pattern,
+    "levels": _levels_by_code,
     "robots": lambda it: checked_robots(_texts(it), it.where),
     "layout": _non_empty_text,
     "affix": _non_empty_text,
@@ -173,14 +173,14 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "shared-frames": _texts,
     "shared-topics": _texts,
     "targets": targets,
-    "roots": _folders,
-    "distro": partial(_one_of, allowed=RELEASES),
-    "urdf": _file,
+    "roots": _existing_folders,
+    "distro": partial(_allowed_text, allowed=RELEASES),
+    "urdf": _existing_file,
     "definitions": lambda it: listed_files(*it),
     "xacro": _argument_sets,
     "exclude": _excluded_patterns,
-    "baseline": _path,
-    "fail-on": partial(_one_of, allowed=LEVELS),
+    "baseline": _path_from_folder,
+    "fail-on": partial(_allowed_text, allowed=LEVELS),
     "seconds": _seconds,
 }
 # Keys whose field has another name.

@@ -28,8 +28,8 @@ _LITERAL = lazy_compile(r"^[^*.]{4}.*\*|\*[^*.]{4}|^[^*]*$")
 def included(paths: Sequence[str]) -> frozenset[str]:
     """Return files that xacro files here or in their packages include, by the known end of a path."""
     files = {real_path(path): path for path in paths}
-    read = filter(_is_read, dict.fromkeys((*files.values(), *_other_xacros(paths))))
-    ends = sets_by_key((os.path.basename(it), it) for path in read for it in _asked_for(path))
+    read = filter(_is_xacro_file, dict.fromkeys((*files.values(), *_other_xacros(paths))))
+    ends = sets_by_key((os.path.basename(it), it) for path in read for it in _include_ends(path))
     loose = [it for its in ends.values() for it in its if "*" in it]
     return frozenset(
         path
@@ -69,12 +69,12 @@ def _other_xacros(paths: Sequence[str]) -> Iterator[str]:
         yield from descriptions_below(folder)
 
 
-def _is_read(path: str) -> bool:
+def _is_xacro_file(path: str) -> bool:
     # A pipe would never end.
     return path.endswith(".xacro") and is_file(path)
 
 
-def _asked_for(path: str) -> Iterator[str]:
+def _include_ends(path: str) -> Iterator[str]:
     """Yield the paths that a file includes, without what only xacro can fill in, and without itself."""
     own = real_path(path)
     for found in _INCLUDE.findall(bytes_if_read(path)):
@@ -96,6 +96,6 @@ def set_among(paths: Sequence[str], settings: Settings) -> Settings:
     settings = settings._replace(included=included(paths))
     if len(paths) == 1:
         return settings
-    files = [it for it in paths if _is_read(it)] if settings.arguments else []
+    files = [it for it in paths if _is_xacro_file(it)] if settings.arguments else []
     known = known_arguments(map(bytes_if_read, files)) if len(files) > 1 else None
     return settings._replace(urdfs=named_urdfs(paths, settings.included), elsewhere=known)

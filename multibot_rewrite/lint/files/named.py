@@ -42,10 +42,10 @@ def files_like(pattern: str) -> tuple[str, ...]:
 
 def descriptions_below(folder: str) -> list[str]:
     """Return the URDF and xacro files of a package, the first ones of many."""
-    return list(islice(_files(folder, _DEEP), _MOST))
+    return list(islice(_files_below(folder, _DEEP), _MOST))
 
 
-def _files(folder: str, deep: int) -> Iterator[str]:
+def _files_below(folder: str, deep: int) -> Iterator[str]:
     inner = []
     for name in sorted(entries(folder)):
         if name.endswith((".urdf", ".xacro")):
@@ -53,4 +53,4 @@ def _files(folder: str, deep: int) -> Iterator[str]:
         elif "." not in name and name not in _SKIPPED:
             inner.append(os.path.join(folder, name))
     for it in inner if deep else ():
-        yield from _files(it, deep - 1)
+        yield from _files_below(it, deep - 1)

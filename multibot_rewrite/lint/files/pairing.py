@@ -59,8 +59,7 @@ def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[s
 
 
 def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
-    """Return the description that an SRDF belongs to: the one that has most of its names. One that
-    lacks more than a few of them is that of another robot or another variant."""
+    """Return the description with most of an SRDF's names, unless it lacks more than a few."""
     if settings.urdf:
         return _pair_with(settings.urdf, srdf, settings)
     name = srdf.document.root.get("name", "").strip()
@@ -74,26 +73,26 @@ def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
             best = found
         if not found.misses:
             break
-    names = len(_names(srdf))
+    names = len(_used_names(srdf))
     fits = best.misses * PART <= names or (best.misses <= SLIPS and best.misses < names)
     return best if fits else NO_PAIR
 
 
 def _candidates(path: str, name: str, settings: Settings) -> list[str]:
-    """Return files with that robot's name, the nearest first; without any those near it on disk
-    with the robot's name, then those with the file name of the SRDF."""
+    """Return files with that robot's name, the nearest first, else with the file name of the SRDF."""
     folder = os.path.dirname(os.path.abspath(path))
     named = [urdf for robot, urdf in settings.urdfs if robot == name]
     if named:
         return sorted(
             named, key=lambda it: (os.path.relpath(os.path.abspath(it), folder).count(os.sep), it)
         )
-    files = list(islice(_files(folder), MOST))
+    files = list(islice(_files_near(folder), MOST))
     same = [it for it in files if robot_name(it) == name]
     return same or [it for it in files if _stem(it) == _stem(path)]
 
 
-def _files(folder: str) -> Iterator[str]:
+def _files_near(folder: str) -> Iterator[str]:
+    """Yield the descriptions near a folder that are no SRDFs."""
     for place in NEAR:
         for ending in ENDINGS:
             found = files_like(os.path.normpath(f"{escape(folder)}/{place}/{ending}"))
@@ -105,12 +104,13 @@ def _stem(path: str) -> str:
 
 
 def _pair_with(path: str, srdf: Inventory, settings: Settings) -> Pair:
+    """Return the robot of a URDF, with the number of the SRDF's names that it lacks."""
     data, name = described(path, settings)
     tree = builtin_tree(settings.definitions, settings.distro, settings.ros)
     inventory = collect(read_document(data, name), tree)
     declared = inventory.declared
     known = declared["link"].keys() | declared["joint"].keys()
-    misses = sum(it not in known for it in _names(srdf))
+    misses = sum(it not in known for it in _used_names(srdf))
     return Pair(read_robot(inventory.document.root), declared, misses)
 
 
@@ -143,7 +143,7 @@ def reach_of(settings: Settings) -> "Reach":
     return Reach(settings.readable, settings.trust, settings.seconds)
 
 
-def _names(srdf: Inventory) -> set[str]:
+def _used_names(srdf: Inventory) -> set[str]:
     """Return the links and joints an SRDF uses, without those it declares."""
     uses = (it for it in srdf.claims if it.site.role == "uses" and it.site.whole_value_kind)
     return {it.value.strip() for it in uses} - srdf.declared["joint"].keys()

@@ -38,9 +38,10 @@ class Failed(NamedTuple):
 
 
 def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
-    """Yield every subject of a file; raises InputError if it cannot be read. What others include is
-    linted where it is used. Such a xacro file, or one that only defines what others use, is not
-    expanded alone, and may have any root element."""
+    """Yield every subject of a file; raises InputError if it cannot be read.
+
+    What others include is linted where it is used. Such a xacro file, or one that only defines what
+    others use, is not expanded alone, and may have any root element."""
     if path.endswith(JOIN):
         from multibot_rewrite.description.joining.from_file import read_joined  # few are joined
 
@@ -73,6 +74,7 @@ def _with_models(document: Document, settings: Settings) -> Subject:
 
 
 def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
+    """Yield the subjects of a xacro file: with its default arguments, and each set of the settings."""
     sets = [given for given in settings.arguments if matches(path, given.pattern)]
     for given in (DEFAULT, *sets):
         try:
@@ -96,8 +98,7 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 
 
 def _only_defines(root: _Element) -> bool:
-    """Return whether a file only defines what others use. Expanded alone it is an empty robot. One
-    that only includes may be a whole robot; one that defines macros as well is read by others."""
+    """Return whether a file only defines what others use: expanded alone it is an empty robot."""
     parts = (str(child.tag).rpartition("}") for child in root.iterchildren("*"))
     tags = {name if "xacro" in space else "" for space, _, name in parts}
     return tags <= DEFINITIONS and ("include" not in tags or "macro" in tags)

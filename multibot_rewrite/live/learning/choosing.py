@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which nodes of a graph to learn (without tools, and without helper nodes of others), and which of
-their ends are one in a node's code: an action, an image, a known part."""
+"""Which nodes of a graph to learn, and which of their ends are one in the code: an action, an image."""
 
 import re
 from collections import Counter, defaultdict
@@ -29,9 +28,10 @@ class Helpers(NamedTuple):
 
 
 def choose_nodes(graph: System, names: Sequence[str], namespace: str) -> tuple[str, ...]:
-    """Return the full names of the nodes to learn, sorted: ``names``, or all below ``namespace``
-    but tools. Raises UsageError for a node that is not in the graph, not below the namespace, or in
-    the graph twice, and if there is no node at all."""
+    """Return the full names of the nodes to learn, sorted: ``names``, or all below ``namespace``.
+
+    Raises UsageError for a node that is not in the graph, not below the namespace, or in the graph
+    twice, and if there is no node at all."""
     base = namespace_prefix(namespace)
     times = Counter(node.name for node in graph.nodes)
     for name in names:
@@ -77,6 +77,7 @@ def check_seen_name(what: str, name: str) -> None:
 
 
 def _suggestion(name: str, known: Iterable[str]) -> str:
+    """Return which of the running nodes may be meant."""
     nodes = sorted(node for node in known if not is_tool(node))
     near = nearest_few(name, nodes, 3) or nodes[:3]
     return f"running are {', '.join(near)}" if near else "no nodes are running, or only tools"
@@ -131,8 +132,7 @@ Seen = Mapping[EndpointId, tuple[str, ...]]
 
 
 def fold_actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
-    """Return ``seen`` with an action in place of the services and topics it is made of. A node with
-    only the topics of an action is not its client: those topics stay."""
+    """Return ``seen`` with each action in place of the services and topics it is made of."""
     kinds = defaultdict(set)
     found = {}
     for key, types in seen.items():
@@ -175,8 +175,7 @@ def fold_images(seen: Seen) -> tuple[dict[EndpointId, tuple[str, ...]], frozense
 def fold_parts(
     endpoints: Iterable[Endpoint], parts: Mapping[str, tuple[Endpoint, ...]], in_root: bool
 ) -> tuple[list[Endpoint], tuple[str, ...]]:
-    """Return ``endpoints`` without those of complete parts, and the names of these parts. With
-    ``in_root`` the graph name ``/x`` may be ``x`` in the code."""
+    """Return ``endpoints`` without those of complete parts, and the names of these parts."""
     left = {_signature(end, end.name): end for end in endpoints}
     complete = []
     for name, part in parts.items():
@@ -200,4 +199,5 @@ def _signatures(end: Endpoint, in_root: bool) -> list[_Signature]:
 
 
 def _signature(end: Endpoint, name: str) -> _Signature:
+    """Return what identifies an endpoint called ``name`` in the graph."""
     return end.kind, end.role, name, end.type, end.also, end.helper

@@ -84,9 +84,10 @@ class _SeenPlace(NamedTuple):
 def learn(
     graph: System, names: Sequence[str], namespace: str, library: NodeLibrary
 ) -> tuple[LearnedNode, ...]:
-    """Return facts of the nodes ``names`` below ``namespace``, the robot's namespace. ``library``
-    has the known parts, and the names in the code of known nodes. Raises UsageError for an endpoint
-    that no node can have."""
+    """Return facts of the nodes ``names`` below the robot's ``namespace``.
+
+    ``library`` has the known parts, and the names in the code of known nodes. Raises UsageError for
+    an endpoint that no node can have."""
     base = namespace_prefix(namespace)
     ends = lists_by_key((end.node, end) for end in graph.ends)
     helpers = helpers_of(graph, names)
@@ -119,7 +120,7 @@ def _learn_node(
     facts = NodeFacts(node, "", (*own, *taken), note=f"seen as {name}", apart=apart)
     remarks = [] if ends.get(name) else ["only its name is seen, no endpoints"]
     remarks += [] if helpers.sure else [f"{SHARED_PROCESS}: {', '.join(helpers.names)}"]
-    remarks += [_compare(facts, known, usual)] if known else []
+    remarks += [_differences(facts, known, usual)] if known else []
     return LearnedNode(name, facts, tuple(own), parts, tuple(remarks))
 
 
@@ -173,9 +174,7 @@ def _types_by_endpoint(ends: Iterable[End]) -> Seen:
 
 
 def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:
-    """Return a name that the code may have, whose remap rule is right for the other possible names
-    too. In the root namespace ``x`` and ``/x`` are one name, and the rule for ``/x`` remaps
-    both."""
+    """Return a name that the code may have, whose remap rule is right for other possible names too."""
     full = f"{place.base}/{place.node}"
     above = full.rpartition("/")[0]
     level = name.removeprefix(place.base) if name.startswith(f"{place.base}/") else name
@@ -190,8 +189,7 @@ def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:
 
 
 def _merge(first: Endpoint, second: Endpoint, key: EndpointId) -> Endpoint:
-    """Return one endpoint for two with the same name in the code. For an action and a service it is
-    the action, whose rules are right for both."""
+    """Return one endpoint for two with the same name in the code; of action and service the action."""
     if first.kind != second.kind:
         return first._replace(note=f"there is a {key.kind} with this name too")
     types = sorted({*filter(None, (first.type, *first.also, second.type, *second.also))})
@@ -217,8 +215,8 @@ def _with_helpers(
     return found
 
 
-def _compare(facts: NodeFacts, known: NodeFacts, usual: frozenset[_Slot]) -> str:
-    """Compare what was seen with the node of this name in the library."""
+def _differences(facts: NodeFacts, known: NodeFacts, usual: frozenset[_Slot]) -> str:
+    """Return in words how a node differs from the one of this name in the library."""
     described = [_pattern(end, known.name) for end in known.endpoints]
     seen = {_signature(end, facts.name): end for end in facts.endpoints}
     more = [
@@ -237,6 +235,7 @@ def _compare(facts: NodeFacts, known: NodeFacts, usual: frozenset[_Slot]) -> str
 
 
 def _signature(end: Endpoint, node: str) -> tuple[str, str, str]:
+    """Return kind, role and full name of an endpoint."""
     return end.kind, end.role, _full_name(end.name, node)
 
 
@@ -248,4 +247,5 @@ def _pattern(end: Endpoint, node: str) -> re.Pattern[str]:
 
 
 def _listed(ends: Iterable[Endpoint]) -> str:
+    """Return the roles and names of endpoints as a text."""
     return ", ".join(f"{end.role} {end.name}" for end in ends)

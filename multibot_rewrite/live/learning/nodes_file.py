@@ -33,9 +33,10 @@ _NO_WRAP = 1 << 30
 
 
 def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary) -> str:
-    """Return the text of a file with the nodes and one node set of them. Raises ProofError if
-    reading it does not give the same nodes."""
-    text = "".join(f"{line}\n" for line in _lines(learned, node_set))
+    """Return the text of a file with the nodes and one node set of them.
+
+    Raises ProofError if reading it does not give the same nodes."""
+    text = "".join(f"{line}\n" for line in _file_lines(learned, node_set))
     facts = tuple(node.facts for node in learned)
     try:
         found = nodes_of_set(extend(library, text, node_set), node_set)
@@ -49,14 +50,14 @@ def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary)
     return text
 
 
-def _lines(learned: Sequence[LearnedNode], node_set: str) -> Iterator[str]:
+def _file_lines(learned: Sequence[LearnedNode], node_set: str) -> Iterator[str]:
     yield from HEAD.splitlines()
-    yield from _comment(f"Of: {' '.join(node.seen for node in learned)}", "")
+    yield from _comment_lines(f"Of: {' '.join(node.seen for node in learned)}", "")
     yield from ("", "nodes:")
     for node in learned:
         facts = node.facts
         for remark in node.remarks:
-            yield from _comment(remark, "  ")
+            yield from _comment_lines(remark, "  ")
         yield f"  {_scalar(facts.name)}:"
         yield f"    note: {_scalar(facts.note)}"
         yield from ["    apart: true"] * facts.apart
@@ -88,19 +89,21 @@ def _value(end: Endpoint) -> str:
 
 
 def _scalar(text: str) -> str:
+    """Return a text as YAML."""
     import yaml
 
     return str(yaml.safe_dump(text, width=_NO_WRAP)).removesuffix("...\n").rstrip("\n")
 
 
 def _flow(value: object) -> str:
+    """Return a value as YAML in one line."""
     import yaml
 
     dumped = yaml.safe_dump(value, width=_NO_WRAP, default_flow_style=True, sort_keys=False)
     return str(dumped).rstrip("\n")
 
 
-def _comment(text: str, indent: str) -> list[str]:
+def _comment_lines(text: str, indent: str) -> list[str]:
     lead = f"{indent}# "
     return wrap(
         text, WIDTH, initial_indent=lead, subsequent_indent=f"{lead}  ", break_long_words=False
@@ -113,8 +116,7 @@ KEEP_LAST = "KEEP_LAST"
 def to_nodl(
     node: LearnedNode, graph: System, namespace: str, library: NodeLibrary, json: bool = False
 ) -> NodlFile:
-    """Return the document of a learned node; raises ProofError if reading it gives something else.
-    ``namespace`` is the robot's. QoS is as seen; what a graph does not show is SYSTEM_DEFAULT."""
+    """Return the NoDL document of a learned node; raises ProofError if reading it gives another one."""
     usual = {(it.role, it.name) for it in library.parts[EVERY_NODE]} | {("subscribes", CLOCK)}
     ends = [it for it in node.facts.endpoints if (it.role, it.name) not in usual]
     # One entry for each of its types.
@@ -122,7 +124,9 @@ def to_nodl(
     seen = _Seen(graph, node, namespace.rstrip("/"))
     written += [it for end in ends if end.transport for it in seen.transports(end)]
     description = f"Seen as {node.seen} in a running graph, by multibot snapshot"
-    return document_of(node.facts.name, description, written, lambda it: _qos(seen.qos(it)), json)
+    return document_of(
+        node.facts.name, description, written, lambda it: _nodl_qos(seen.qos(it)), json
+    )
 
 
 class _Seen(NamedTuple):
@@ -152,7 +156,7 @@ class _Seen(NamedTuple):
                 yield Endpoint(TOPIC, end.role, f"{end.name}/{transport}", found.type)
 
 
-def _qos(qos: Qos | None) -> dict[str, object]:
+def _nodl_qos(qos: Qos | None) -> dict[str, object]:
     if qos is None:
         return dict(UNKNOWN_QOS)
     found: dict[str, object] = {"history": DEFAULT, "reliability": DEFAULT}

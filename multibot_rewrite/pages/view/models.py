@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the view draws of a robot: links with shapes, joints, meshes, and a URDF as yourdfpy reads it.
-The only import of yourdfpy and trimesh.
 
-Meshes are looked for as ROS does: package://, file://, and paths next to the description. A material
-without a colour is that of its name in the robot (urdfdom urdf_parser model.cpp).
-"""
+The only import of yourdfpy and trimesh. Meshes are looked for as ROS does: package://, file://, and
+paths next to the description. A material without a colour is that of its name in the robot (urdfdom
+urdf_parser model.cpp)."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -38,9 +37,11 @@ _NOT_DRAWN = ("inertial", "collision", "calibration", "safety_controller")
 
 
 class Shape(NamedTuple):
-    """A shape in its link's frame: ``kind`` is box, cylinder, sphere or mesh, ``size`` its sizes in
-    metres (a mesh's scale). ``mesh`` is its file, ``missing`` why it is shown as a box. ``colour``
-    is red, green, blue, alpha, or empty where the description has none."""
+    """A shape in its link's frame.
+
+    ``kind`` is box, cylinder, sphere or mesh, ``size`` its sizes in metres (a mesh's scale).
+    ``mesh`` is its file, ``missing`` why it is shown as a box. ``colour`` is red, green, blue,
+    alpha, or empty where the description has none."""
 
     kind: str
     size: tuple[float, ...]
@@ -72,8 +73,10 @@ class Model(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Vertices (x, y, z as 32-bit floats) and triangles (three 32-bit numbers of vertices); the colours
-    (red, green, blue, a byte each) of the vertices where the file has materials."""
+    """Vertices and triangles, and the colours of the vertices where the file has materials.
+
+    A vertex is x, y, z as 32-bit floats, a triangle three 32-bit numbers of vertices, a colour red,
+    green, blue, a byte each."""
 
     vertices: bytes
     faces: bytes
@@ -151,9 +154,8 @@ def matrix_of(pose: Pose) -> Matrix:
     return [*([*(round(it, 9) for it in row), round(at, 9)] for row, at in rows), [0, 0, 0, 1]]
 
 
-def three() -> str:
-    """Return three.js with its trackball controls, from trimesh; raises Unusable. Source: trimesh
-    resources/templates/viewer.zip (three.js, MIT)."""
+def three_js() -> str:
+    """Return three.js with trackball controls, of trimesh's viewer.zip (MIT); raises Unusable."""
     import zipfile
 
     prepare_meshes()
@@ -169,8 +171,7 @@ def three() -> str:
 
 
 def load_urdf(root: _Element, source: str) -> Model:
-    """Return the model of a URDF as yourdfpy reads it; ``source`` is the file it was made from. Raises
-    InputError for one that yourdfpy does not read, Unusable without yourdfpy."""
+    """Return the model of a URDF as yourdfpy reads it; raises InputError, Unusable."""
     prepare_meshes()
     import yourdfpy
 
@@ -200,18 +201,20 @@ def _finite(values: Iterable[float]) -> tuple[float, ...]:
 
 
 def _rgba(material: Any) -> Colour:
+    """Return the colour of a material; ``UNCOLOURED`` if it has none."""
     found = material and material.color
     return _finite(found.rgba) if found and len(found.rgba) == 4 else UNCOLOURED
 
 
-def _pose(origin: Any) -> Matrix:
+def _matrix(origin: Any) -> Matrix:
+    """Return the matrix of an origin, in rows."""
     return matrix_of(HERE) if origin is None else [*map(_finite, origin)]
 
 
 def _shapes(link: Any, named: Mapping[str, Colour], source: str) -> Iterator[Shape]:
     for it in link.visuals:
         colour = _rgba(it.material) or (it.material and named.get(it.material.name)) or UNCOLOURED
-        pose, own = _pose(it.origin), it.geometry
+        pose, own = _matrix(it.origin), it.geometry
         if own.box:
             x, y, z = _finite(own.box.size)
             yield Shape("box", (x, y, z), pose, colour)
@@ -235,5 +238,5 @@ def _joint(it: Any) -> Joint:
     leader = it.mimic and it.mimic.joint
     factor, offset = _finite((it.mimic.multiplier, it.mimic.offset)) if leader else (1.0, 0.0)
     mimic = (leader, factor, offset) if leader else None
-    pose, axis = _pose(it.origin), _finite(it.axis)
+    pose, axis = _matrix(it.origin), _finite(it.axis)
     return Joint(it.name, kind, it.parent or "", it.child or "", pose, axis, lower, upper, mimic)

@@ -13,7 +13,7 @@ from typing import Any
 from multibot_rewrite.base.wording import one_line, plural
 from multibot_rewrite.base.workers import limit_time, worker_pool
 from multibot_rewrite.pages.page import Framed, source_hash
-from multibot_rewrite.pages.view.models import Mesh, Model, load_mesh, prepare_meshes, three
+from multibot_rewrite.pages.view.models import Mesh, Model, load_mesh, prepare_meshes, three_js
 from multibot_rewrite.pages.view.scene import DEGREES, METRES, ShownScene, ViewedRobot
 
 MESH_SECONDS = 10.0
@@ -22,8 +22,7 @@ Meshes = Mapping[str, Mesh | str]
 
 
 def meshes_of(scene: ShownScene, tell: Callable[[str], None] = lambda _: None) -> Meshes:
-    """Return the meshes of all robots, each read once, by a worker with limits: a small file may need
-    too much memory or time. ``tell`` gets the name of the one being read."""
+    """Return the meshes of all robots, each read once by a limited worker; ``tell`` gets its name."""
     shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
     paths = [path for path in dict.fromkeys(it.mesh for it in shapes) if path]
     prepare_meshes()
@@ -50,15 +49,15 @@ def to_html(scene: ShownScene, meshes: Meshes, title: str) -> bytes:
 
 def to_frame(scene: ShownScene, meshes: Meshes, title: str) -> Framed:
     """Return the page, to be put into another; raises Unusable without trimesh."""
-    library, own = three(), _asset("viewer.js") + _asset("heard.js")
-    style = _asset("viewer.css")
+    library, own = three_js(), _asset_text("viewer.js") + _asset_text("heard.js")
+    style = _asset_text("viewer.css")
     scripts = f"{source_hash(library)} {source_hash(own)}"
     policy = (
         f"default-src 'none'; style-src {source_hash(style)}; img-src data: blob:;"
         f" script-src {scripts}; base-uri 'none'; form-action 'none'"
     )
     head = escape(one_line(title))
-    data = json.dumps(_data(scene, meshes), separators=(",", ":")).replace("<", "\\u003c")
+    data = json.dumps(_scene_json(scene, meshes), separators=(",", ":")).replace("<", "\\u003c")
     page = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
@@ -83,7 +82,7 @@ _BAR = (
 )
 
 
-def bare(model: Model) -> str:
+def remark_if_empty(model: Model) -> str:
     """Return a remark on a robot that has nothing to show; empty for others."""
     return "" if any(model.links.values()) else "its links have no <visual>: only frames are shown"
 
@@ -93,11 +92,11 @@ def title_of(robots: Sequence[ViewedRobot], layout: str) -> str:
     return f"{plural(len(robots), 'robot')}, layout {layout}"
 
 
-def _asset(name: str) -> str:
+def _asset_text(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 
-def _data(scene: ShownScene, meshes: Meshes) -> dict[str, Any]:
+def _scene_json(scene: ShownScene, meshes: Meshes) -> dict[str, Any]:
     numbers = {path: at for at, path in enumerate(meshes)}
     return {
         "meshes": [
@@ -106,7 +105,7 @@ def _data(scene: ShownScene, meshes: Meshes) -> dict[str, Any]:
             else {"v": _base64(it.vertices), "f": _base64(it.faces), "c": _base64(it.colours)}
             for it in meshes.values()
         ],
-        "robots": [_robot(it, numbers, meshes) for it in scene.robots],
+        "robots": [_robot_json(it, numbers, meshes) for it in scene.robots],
         "trees": scene.trees,
         "same": [METRES, DEGREES],
     }
@@ -116,7 +115,7 @@ def _base64(data: bytes) -> str:
     return base64.b64encode(data).decode()
 
 
-def _robot(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
+def _robot_json(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
     names = {one.after: [one.before, one.line] for one in it.names}
     links: dict[str, list[Any]] = {}
     for link, shapes in it.model.links.items():
@@ -128,4 +127,4 @@ def _robot(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
             rows.append([shape.kind, shape.size, shape.pose, shape.colour, number, missing])
     changes = [[at.line, at.kind, at.path, at.old, at.new, at.rule] for at in it.changes]
     own = {"names": names, "links": links, "joints": it.model.joints, "changes": changes}
-    return {**it._asdict(), "model": None, **own, "bare": bare(it.model)}
+    return {**it._asdict(), "model": None, **own, "bare": remark_if_empty(it.model)}

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A planned fleet -> the scene: each robot's model at its pose, what every name was before, and the
-transforms of a snapshot as trees to be drawn over the robots."""
+"""A planned fleet -> the scene: models at their poses, old names, and a snapshot's tf trees."""
 
 import os
 from collections import defaultdict
@@ -17,8 +16,8 @@ from multibot_rewrite.description.steps.apply import Template, list_changes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, RewrittenRobot
 from multibot_rewrite.pages.view.models import Joint, Model, load_urdf
-from multibot_rewrite.pages.view.sdf_model import declared, line_of, load_sdf
-from multibot_rewrite.planning.plan import tf_topic
+from multibot_rewrite.pages.view.sdf_model import line_of, lines_by_name, load_sdf
+from multibot_rewrite.planning.planned_system import tf_topic
 from multibot_rewrite.related_files.names.rename_map import spell
 from multibot_rewrite.system.records import Edge, System
 from multibot_rewrite.system.tf_copies import tree_topic
@@ -72,7 +71,7 @@ class ShownScene(NamedTuple):
 def scene_of(plan: FleetPlan, graph: System | None = None) -> ShownScene:
     """Return the robots of a plan; raises as ``load_sdf``."""
     templates = {sources: Prepared(job.description).template for sources, job in plan.jobs.items()}
-    robots = tuple(_robot(it, templates[it.spec.sources], graph) for it in plan.robots)
+    robots = tuple(_viewed_robot(it, templates[it.spec.sources], graph) for it in plan.robots)
     if graph is None:
         return ShownScene(robots, ())
     frames = [
@@ -82,14 +81,14 @@ def scene_of(plan: FleetPlan, graph: System | None = None) -> ShownScene:
     return ShownScene(robots, heard_trees(graph.edges, frames, plan.fleet.naming.shared_frames))
 
 
-def _robot(it: RewrittenRobot, template: Template, graph: System | None) -> ViewedRobot:
+def _viewed_robot(it: RewrittenRobot, template: Template, graph: System | None) -> ViewedRobot:
     spec = it.spec
     root, source = it.member.described.document.root, os.path.abspath(spec.description)
     model = (load_sdf if root.tag == "sdf" else load_urdf)(root, source)
     # Frames have the tag of a robot, its topics the namespace.
     made = [one for one in list_changes(template, spec.tag) if one.kind not in GRAPH_KINDS]
     made += (one for one in list_changes(template, spec.namespace) if one.kind in GRAPH_KINDS)
-    before = _before(it, model)
+    before = _names_before(it, model)
     keys = (("link", model.links), ("joint", [one.name for one in model.joints]))
     names = tuple(
         Name(name, *before.get((kind, name), (name, 0))) for kind, own in keys for name in own
@@ -112,7 +111,7 @@ def _robot(it: RewrittenRobot, template: Template, graph: System | None) -> View
         here = link not in above or (edge is not None and edge.parent == above[link])
         heard[link] = SILENT if f"{prefix}{link}" not in known else HEARD if here else ELSEWHERE
     links = [one.child for one in model.joints if heard.get(one.child) == HEARD]
-    transforms = {link: placed(edges[f"{prefix}{link}"]) for link in links}
+    transforms = {link: transform_of(edges[f"{prefix}{link}"]) for link in links}
     file = (
         f"{spec.description} (expanded)"
         if spec.description.endswith(".xacro")
@@ -124,12 +123,11 @@ def _robot(it: RewrittenRobot, template: Template, graph: System | None) -> View
     )  # fmt: skip
 
 
-def _before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str, int]]:
-    """Return the old name of each link and joint, and the line that declares it. Names within nested
-    models of an SDF are matched by their order, which a rewrite keeps."""
+def _names_before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str, int]]:
+    """Return the old name and line of each link and joint; nested models are matched by order."""
     root = it.member.source.root
     if root.tag == it.member.described.document.root.tag == "sdf":
-        old, lines = load_sdf(root, ""), declared(root)
+        old, lines = load_sdf(root, ""), lines_by_name(root)
         both = [("link", *pair) for pair in zip(model.links, old.links, strict=True)]
         both += [
             ("joint", new.name, was.name) for new, was in zip(model.joints, old.joints, strict=True)
@@ -156,8 +154,7 @@ class HeardFrame(NamedTuple):
 
 
 class HeardTree(NamedTuple):
-    """Frames below ``root`` on a tf topic, parents first. It is where ``robot`` is planned to be,
-    at the world's origin for none."""
+    """Frames below ``root``, parents first, to be drawn at ``robot``'s planned pose or the origin."""
 
     topic: str
     root: str
@@ -183,7 +180,7 @@ def heard_trees(
     found = []
     for topic, above in by_topic.items():
         for root in dict.fromkeys(it.parent for it in above.values() if it.parent not in above):
-            frames = tuple(_below(root, above))
+            frames = tuple(_frames_below(root, above))
             names = {root, *(it.name for it in frames)}
             own = [it.robot for it in robots if it.topic == topic and it.frames & names]
             # The one robot whose tree this is: nothing says where its root is in the world.
@@ -192,31 +189,31 @@ def heard_trees(
     return tuple(found)
 
 
-def placed(edge: Edge) -> tuple[float, ...]:
+def transform_of(edge: Edge) -> tuple[float, ...]:
     """Return its transform, if all of it is numbers."""
     return edge.transform if all(map(isfinite, edge.transform)) else ()
 
 
-def _below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
+def _frames_below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
     children = lists_by_key((it.parent, it) for it in above.values())
     todo = [root]
     for name in todo:  # grows
         for it in children[name]:
-            if transform := placed(it):
+            if transform := transform_of(it):
                 yield HeardFrame(it.child, name, transform)
                 todo.append(it.child)
 
 
-def moved(joints: Iterable[Joint], heard: Mapping[str, tuple[float, ...]]) -> Iterator[str]:
+def moved_links(joints: Iterable[Joint], heard: Mapping[str, tuple[float, ...]]) -> Iterator[str]:
     """Yield links on fixed joints that were heard elsewhere, and how far off; ``heard`` is by link."""
     for it in joints:
         if it.type == "fixed" and heard.get(it.child):
-            metres, angle = apart(it, heard[it.child])
+            metres, angle = offset_between(it, heard[it.child])
             if metres > METRES or angle > DEGREES:
                 yield f"{it.child} by {metres:.3f} m and {angle:.1f} degrees"
 
 
-def apart(joint: Joint, heard: tuple[float, ...]) -> tuple[float, float]:
+def offset_between(joint: Joint, heard: tuple[float, ...]) -> tuple[float, float]:
     """Return metres and degrees between a joint's origin and a transform."""
     (a, b, c, x), (d, e, f, y), (g, h, i, z) = (tuple(row) for row in joint.pose[:3])
     turn = product(

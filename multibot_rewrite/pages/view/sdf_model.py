@@ -63,7 +63,7 @@ def load_sdf(root: _Element, source: str) -> Model:
     return Model({MODEL: (), **shapes}, (*fixed, *joints))
 
 
-def declared(root: _Element) -> dict[str, int]:
+def lines_by_name(root: _Element) -> dict[str, int]:
     """Return the line of each link, joint, frame and nested model of the first model."""
     model = next(root.iter("model"))
     return {it.name: line_of(it.element) for it in named_in(model, "")}

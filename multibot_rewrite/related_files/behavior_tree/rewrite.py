@@ -58,7 +58,7 @@ def ports_of(document: Document) -> "Iterator[tuple[_Element, Site]]":
             continue
         for attribute, value in element.items():
             if not _blackboard_entry(element, str(value), trees):
-                kind = _kind(element, str(attribute), trees)
+                kind = _kind_of_literal(element, str(attribute), trees)
                 yield element, _site_of(document, start, str(attribute), str(value), kind)
 
 
@@ -97,7 +97,7 @@ def _model_default(
     yield element, _site_of(document, start, "default", value, kind or "")
 
 
-def _kind(element: "_Element", attribute: str, trees: _Trees) -> str:
+def _kind_of_literal(element: "_Element", attribute: str, trees: _Trees) -> str:
     """Return the kind of name that a literal is; empty if that is not known."""
     if element.tag == "SetBlackboard" and attribute == "value":
         tree = next((it for it in element.iterancestors("BehaviorTree")), None)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which kind of MoveIt file a YAML file is, by its content, else by its name; and where it holds
-names: read from ``moveit.yaml``, which explains its own form.
-"""
+"""Finds the kind of a MoveIt file, by content or name, and where it holds names (moveit.yaml)."""
 
 import os
 from collections.abc import Iterator, Mapping
@@ -61,8 +59,8 @@ def kinds() -> tuple[MoveitKind, ...]:
 def find_names(
     root: yaml.Node | None, rules: Shapes, names: RelatedNames
 ) -> tuple[list[Site], list[Site], list[Site]]:
-    """Return every name below ``root``, the texts of unknown use, and repeated keys; an aliased
-    value counts once for every shape that reaches it."""
+    """Return every name below ``root``, the texts of unknown use, and repeated keys."""
+    # An aliased value counts once for every shape that reaches it.
     walk = _Walk(names, [], set(), set())
     if root is not None:
         _claim_below(root, rules, walk)
@@ -106,10 +104,10 @@ def _claim_below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
     elif isinstance(node, yaml.ScalarNode):
         if isinstance(rule, str) and is_text(node):
             walk.claimed.add(id(node))
-            walk.found.extend(_named(node, rule))
+            walk.found.extend(_names_in_value(node, rule))
     elif isinstance(rule, Mapping):
         for key, value in entries(node):
-            match = _resolved(str(key.value), 0, value, rule, walk.names)
+            match = _match_of_key(str(key.value), 0, value, rule, walk.names)
             if match is None:
                 continue
             marks, below = match
@@ -121,7 +119,7 @@ def _claim_below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
             _claim_below(value, below, walk)
 
 
-def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
+def _names_in_value(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
     """Yield the names in a value: those in ``joints(a, b)``, otherwise its text."""
     slot = slot_of(node)
     found = _EVALUATOR.fullmatch(slot.value) if kind == "words" else None
@@ -132,38 +130,43 @@ def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
         yield Site(found["kind"], without_robot(it[0]), "", slot, it.start(), len(it[0]))
 
 
-def _resolved(
+def _match_of_key(
     word: str, at: int, value: yaml.Node, rules: Shapes, names: RelatedNames
 ) -> _Match | None:
     """Return the names in a key: nested maps and keys with dots are the same parameter."""
-    found = _exact(word, at, value, rules, names)
+    found = _match_of_known(word, at, value, rules, names)
     if found:
         return found
     for dot in (at_ for at_, letter in enumerate(word) if letter == "."):
-        head = _exact(word[:dot], at, None, rules, names) or _open(word[:dot], at, None, rules)
-        below = _rest(head, word[dot + 1 :], at + dot + 1, value, names) if head else None
+        head = _match_of_known(word[:dot], at, None, rules, names) or _match_of_any(
+            word[:dot], at, None, rules
+        )
+        below = _match_of_rest(head, word[dot + 1 :], at + dot + 1, value, names) if head else None
         if below:
             return below
-    return _open(word, at, value, rules)
+    return _match_of_any(word, at, value, rules)
 
 
-def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: RelatedNames) -> _Match | None:
+def _match_of_rest(
+    head: _Match, word: str, at: int, value: yaml.Node, names: RelatedNames
+) -> _Match | None:
+    """Return the match with names in the rest of a key; None if it has no place."""
     marks, rule = head
     if rule == KEEP:
-        known = all(_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
+        known = all(_has_name(names, kind, text) for _, text, kind in marks if kind in KINDS)
         return head if known else None
-    below = _resolved(word, at, value, rule, names) if isinstance(rule, Mapping) else None
+    below = _match_of_key(word, at, value, rule, names) if isinstance(rule, Mapping) else None
     return ((*marks, *below[0]), below[1]) if below else None
 
 
-def _exact(
+def _match_of_known(
     word: str, at: int, value: yaml.Node | None, rules: Shapes, names: RelatedNames
 ) -> _Match | None:
     """Return the match of a literal key, of a declared name, or of a name known by its contents."""
     if word in rules and word[:1] not in ("<", "*"):
         return (), rules[word]
-    for kind, telling, rule in _wild(rules):
-        if kind in KINDS and _declared(names, kind, word):
+    for kind, telling, rule in _open_keys(rules):
+        if kind in KINDS and _has_name(names, kind, word):
             return ((at, word, kind),), rule
         if not telling or value is None:
             continue
@@ -176,20 +179,20 @@ def _exact(
     return None
 
 
-def _declared(names: RelatedNames, kind: str, word: str) -> bool:
-    """Return whether the description declares it, without a launch file's ``$(var prefix)``."""
+def _has_name(names: RelatedNames, kind: str, word: str) -> bool:
+    """Return whether the description declares a name, without a ``$(var prefix)``."""
     return is_declared(names, kind, without_robot(word))
 
 
-def _open(word: str, at: int, value: yaml.Node | None, rules: Shapes) -> _Match | None:
+def _match_of_any(word: str, at: int, value: yaml.Node | None, rules: Shapes) -> _Match | None:
     """Return the match of a key that may be any name."""
-    for kind, telling, rule in _wild(rules):
+    for kind, telling, rule in _open_keys(rules):
         if not telling or (value is None and "declared" not in telling):
             return ((at, word, kind),), rule
     return ((), rules["*"]) if "*" in rules else None
 
 
-def _wild(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
+def _open_keys(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
     for key, rule in rules.items():
         if key.startswith("<"):
             kind, _, telling = key[1:-1].partition(" if ")
@@ -204,6 +207,7 @@ def _scalars(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
 
 
 def _nodes(root: yaml.Node | None) -> Iterator[yaml.Node]:
+    """Yield every node of a document once."""
     seen: set[int] = set()
     waiting = [root] if root is not None else []
     while waiting:
@@ -235,8 +239,7 @@ _DEPTH = 4
 
 
 def file_kind(document: YamlText) -> str:
-    """Return which kind of MoveIt file this is, by content or else name; ``empty`` if it is empty.
-    Raises InputError if it is not a MoveIt file."""
+    """Return the kind of a MoveIt file, or ``empty``; raises InputError for another file."""
     kind = find_kind(document)
     return kind.name if kind else EMPTY
 

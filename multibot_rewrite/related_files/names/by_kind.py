@@ -39,7 +39,7 @@ def joint(context: Context, value: str) -> str:
     above, slash, name = value.rpartition("/")
     if not slash or not is_declared(context.names, "joint", name):
         return value
-    return f"{_chain(context, above)}/{spell(context.names, 'joint', name)}"
+    return f"{_path_before_name(context, above)}/{spell(context.names, 'joint', name)}"
 
 
 def interface(context: Context, value: str) -> str:
@@ -50,9 +50,9 @@ def interface(context: Context, value: str) -> str:
     first, inside, rest = owner.partition("/")
     if inside and not is_component(context, rest.rpartition("/")[2]):
         # drive/linear/velocity: no part of the robot, so only drive is a controller.
-        return f"{_chain(context, first)}/{rest}/{last}"
+        return f"{_path_before_name(context, first)}/{rest}/{last}"
     if inside or is_component(context, owner):
-        return f"{_chain(context, owner)}/{last}"
+        return f"{_path_before_name(context, owner)}/{last}"
     # Descriptions do not declare all their gpios.
     return f"{spell(context.names, 'gpio', owner)}/{last}"
 
@@ -62,7 +62,7 @@ def is_component(context: Context, value: str) -> bool:
     return is_declared(context.names, "component", value)
 
 
-def _chain(context: Context, value: str) -> str:
+def _path_before_name(context: Context, value: str) -> str:
     """Return the robot's version of the path before a name: its parts and chained controllers."""
     parts = (
         component(context, it) if is_component(context, it) else controller(context, it)
@@ -108,12 +108,12 @@ def namespace(context: Context, value: str) -> str:
 
 def stem(context: Context, value: str) -> str:
     """Return the robot's version of a beginning of frame names: only a prefix can be added."""
-    return spell(context.names, "frame", value) if _prefixes(context) else value
+    return spell(context.names, "frame", value) if _has_prefix(context) else value
 
 
 def joint_stem(context: Context, value: str) -> str:
     """Return the prefix that the node puts before joints, with _ after it, unless it is empty."""
-    whole = _prefix("joint", context, f"{value}{STEM_END}" if value else "")
+    whole = _prefix_for_kind("joint", context, f"{value}{STEM_END}" if value else "")
     return whole.removesuffix(STEM_END) if whole.endswith(STEM_END) else value
 
 
@@ -138,22 +138,22 @@ def _renamed_word(context: Context, value: str) -> str:
     return spell(context.names, kind, value) if kind else value
 
 
-def _prefixes(context: Context) -> bool:
+def _has_prefix(context: Context) -> bool:
     return context.names.naming.affix == PREFIX
 
 
-def _prefix(kind: str, context: Context, value: str) -> str:
+def _prefix_for_kind(kind: str, context: Context, value: str) -> str:
     """Return the prefix that the node puts before names of this kind; it may be empty."""
     separator = context.names.naming.separators.get(kind)
-    own = _own_prefix(context, kind)
+    own = _argument_prefix(context, kind)
     if own:
         return own if value in ("", own) else f"{own}{value}"
-    if separator is None or not _prefixes(context) or (value and not is_plain(value)):
+    if separator is None or not _has_prefix(context) or (value and not is_plain(value)):
         return value
     return f"{TAG_SLOT}{separator}{value}"
 
 
-def _own_prefix(context: Context, kind: str) -> str:
+def _argument_prefix(context: Context, kind: str) -> str:
     """Return the prefix that a xacro argument puts before names of this kind; empty for none."""
     texts = (
         text.removesuffix(plain)
@@ -179,6 +179,7 @@ def output(_: Context, value: str) -> str:
 
 
 def _speller(kind: str) -> Speller:
+    """Return the function that renames names of a kind."""
     return lambda context, value: spell(context.names, kind, value)
 
 
@@ -190,7 +191,7 @@ SPELLERS: Mapping[str, Speller] = {
     "node": node,
     "namespace": namespace,
     "stem": stem,
-    **{word: partial(_prefix, kind) for word, kind in _PREFIXES.items()},
+    **{word: partial(_prefix_for_kind, kind) for word, kind in _PREFIXES.items()},
     "joint_stem": joint_stem,
     "doubles": before_frames(""),
     "doubles_as_is": before_frames("/"),
@@ -205,10 +206,10 @@ SPELLERS: Mapping[str, Speller] = {
 def expressible(context: Context, kind: str) -> bool:
     """Return whether a prefix parameter of this kind can express the fleet's naming."""
     of = PREFIXED.get(kind)
-    if of is None or of not in context.names.naming.separators or _own_prefix(context, of):
+    if of is None or of not in context.names.naming.separators or _argument_prefix(context, of):
         return True
     ends = kind != "joint_stem" or context.names.naming.separators[of] == STEM_END
-    return ends and _prefixes(context)
+    return ends and _has_prefix(context)
 
 
 def is_shared_frame(context: Context, value: str) -> bool:
@@ -219,3 +220,10 @@ def is_shared_frame(context: Context, value: str) -> bool:
 def frames_differ(context: Context) -> bool:
     """Return whether the robots have different frame names."""
     return not FRAME_KINDS.isdisjoint(context.names.naming.separators)
+
+
+def is_emptied(context: Context, kind: str, text: str) -> bool:
+    """Return whether a rewrite takes out a prefix, since the node puts it before frames that have the
+    robot's name."""
+    bare = frames_differ(context) and not context.names.naming.layout.at_run_time
+    return bare and kind == "doubles_as_is" and is_plain(text)

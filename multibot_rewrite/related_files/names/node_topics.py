@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics in parameters: what each becomes for a robot, checked by resolving it as the node does; and
-topics in files for one robot -> the absolute topic that each robot has instead.
+"""Renames topics in parameters, and finds the robot's absolute topic for a topic in a file.
 
 A name read from a parameter is remapped like any other. So the new value must resolve, with the
-robot's remap rules, to the robot's version of the name that the old value resolves to without rules.
-"""
+robot's remap rules, to the robot's version of the name that the old value resolves to without
+rules."""
 
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
@@ -27,7 +26,8 @@ Facts = Mapping[str, NodeFacts]
 
 
 class TopicText(NamedTuple):
-    """The new text for a topic. ``wrong_target`` is what it resolves to if that is wrong, else empty;
+    """The new text for a topic; ``wrong_target`` is what it resolves to if that is wrong.
+
     ``made_absolute`` is true if a relative name had to be made absolute."""
 
     text: str
@@ -153,7 +153,7 @@ def robot_topic(names: RelatedNames, value: str, known: Mapping[str, str] = NOTH
 
 
 def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
-    """Return by the topics of a single robot's nodes those of ``robot`` in a fleet's table."""
+    """Return the topics of ``robot`` in a fleet, by those of a single robot's nodes."""
     ours = {node.name for node in facts if not node.shared}
     node_set = {
         node.full_name: node.node

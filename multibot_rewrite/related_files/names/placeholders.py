@@ -26,8 +26,8 @@ def is_robot(value: str) -> bool:
 
 
 def without_robot(value: str, lead: str = "") -> str:
-    """Return a name without the placeholder for the robot in front of it; ``lead`` comes before a name
-    below a namespace. It stays if nothing else is in it, or if another placeholder is left."""
+    """Return a name without the placeholder for the robot in front, with ``lead`` if below it."""
+    # It stays if nothing else is in it, or if another placeholder is left.
     found = _FIRST.fullmatch(value)
     if found is None or "<" in found["name"] or not NOT_PLAIN.isdisjoint(found["name"]):
         return value

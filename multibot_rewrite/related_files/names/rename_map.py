@@ -72,8 +72,8 @@ def related_file_names(
     in_full: Collection[str] = (),
     given: frozenset[str] = frozenset(),
 ) -> RelatedNames:
-    """Return the names of a robot; ``own`` are declared by either of their texts. Nodes in the robot's
-    namespace call the topics ``in_full``, which it does not reach, by their full names."""
+    """Return the names of a robot; ``own`` are declared by either of their texts."""
+    # Nodes call the topics ``in_full``, which their namespace does not reach, by full names.
     if naming.topics == NAMESPACE:
         made = {key: text for key, text in own.items() if key[0] == TOPIC and text in in_full}
         own = {**own, **{key: f"/{text.lstrip('/')}" for key, text in made.items()}}
@@ -94,8 +94,8 @@ def related_file_names(
 def _without_argument(
     robot: str, own: Mapping[tuple[str, str], str]
 ) -> Iterator[tuple[str, str, str]]:
-    """Yield kind, name and text of names in which the robot's name is where the argument's default
-    was: of ``lbr_A1`` a file with ``$(var robot_name)_A1`` has ``A1``."""
+    """Yield kind, name and text of names in which the robot's name replaces a default."""
+    # Of ``lbr_A1`` a file with ``$(var robot_name)_A1`` has ``A1``.
     for (kind, plain), text in own.items():
         rest = text.removeprefix(robot)
         if robot and rest != text and rest[:1] in ("_", "/") and plain.endswith(rest):

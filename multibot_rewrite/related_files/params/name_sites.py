@@ -33,10 +33,10 @@ _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool
 
 
 class SectionNames(NamedTuple):
-    """What a section holds: names, known parameters by path, scalars of unknown parameters, keys
-    without a value, keys that are twice in one mapping, keys of unknown parameters, and scalars of
-    parameters that hold no names.
-    """
+    """What a section holds: names, known parameters by path, and other scalars and keys.
+
+    ``unclaimed`` scalars and ``keys`` are of unknown parameters, ``kept`` ones hold no names;
+    ``empty`` keys have no value, ``twice`` are repeated keys."""
 
     sites: list[Site]
     known: set[str]
@@ -67,8 +67,7 @@ class _Job(NamedTuple):
 
     @property
     def node(self) -> str:
-        """The node as the node sets call it: a pattern such as /**/amcl is for the node of that
-        name."""
+        """The node as node sets call it: a pattern such as /**/amcl is for a node of that name."""
         path = self.section.path
         return path.rpartition("/")[2] if self.section.wild else path
 
@@ -79,16 +78,18 @@ def find_names(
     """Look at every parameter of a section; InputError for keys that are not scalars."""
     names = SectionNames([], set(), [], [], [], [], [])
     tree = section.node.tree if section.node else known.anywhere
-    _walk(_Job(document, section, known, release, names), section.body, [(tree, ())])
+    _walk_mapping(_Job(document, section, known, release, names), section.body, [(tree, ())])
     return names
 
 
 def params_at(node: NodeParameters, name: str, key: yaml.ScalarNode) -> list[Param]:
     """Return the known parameters with this dotted name, in this release or another."""
-    return [param for branch, _ in _below([(node.tree, ())], name, key) for param in branch.params]
+    return [
+        param for branch, _ in _children([(node.tree, ())], name, key) for param in branch.params
+    ]
 
 
-def _walk(job: _Job, body: yaml.MappingNode, states: list[_State]) -> None:
+def _walk_mapping(job: _Job, body: yaml.MappingNode, states: list[_State]) -> None:
     seen = set()
     for key, value in body.value:
         if not isinstance(key, yaml.ScalarNode):
@@ -96,20 +97,21 @@ def _walk(job: _Job, body: yaml.MappingNode, states: list[_State]) -> None:
         if key.value in seen:
             job.names.twice.append(key)
         seen.add(key.value)
-        below = _below(states, key.value, key) if states else states
+        below = _children(states, key.value, key) if states else states
         if not below:
             job.names.keys.append(key)
         if inner := names_below(value):
-            _walk(job, inner, below)
+            _walk_mapping(job, inner, below)
         # Most parameters are numbers that hold no name.
         elif below or value.tag not in _NO_NAMES:
-            _claim(job, key, value, below, body)
+            _claim_parameter(job, key, value, below, body)
 
 
-def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
+def _children(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
+    """Return the known places below for a key."""
     if "." in word:
         for place, part in enumerate(word.split(".")):
-            states = _below(states, part, key, place)
+            states = _children(states, part, key, place)
         return states
     found: list[_State] = []
     for branch, marks in states:
@@ -124,10 +126,10 @@ def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -
     return found
 
 
-def _claim(
+def _claim_parameter(
     job: _Job, key: yaml.ScalarNode, value: yaml.Node, states: list[_State], layer: yaml.MappingNode
 ) -> None:
-    """Note the names in one parameter: known, guessed from its name, or unclaimed."""
+    """Record the names in one parameter: known, guessed or unclaimed."""
     names = job.names
     if value.tag == NULL and not value.value:
         names.empty.append(key)
@@ -136,7 +138,7 @@ def _claim(
         if branch.params:
             param = branch.params[0]
             names.known.add(param.path)
-            names.sites.extend(_in_key(it, param) for it in marks)
+            names.sites.extend(_key_site(it, param) for it in marks)
             break
     if param is None or param.kind != "keep":
         reach = FROM_NODE
@@ -144,12 +146,12 @@ def _claim(
             plugin = next((str(it.value) for key, it in layer.value if key.value == "plugin"), "")
             outside = is_absolute(param, job.release) or is_below_costmap(plugin)
             reach = IN_FULL if outside else FROM_PARENT
-        _values(job, key, items(value), param, reach)
+        _value_sites(job, key, items(value), param, reach)
     else:
         names.kept.extend(it for it in items(value) if isinstance(it, yaml.ScalarNode))
 
 
-def _in_key(mark: _Mark, param: Param) -> Site:
+def _key_site(mark: _Mark, param: Param) -> Site:
     key, segment, kind = mark
     words = str(key.value).split(".")
     at, size = sum(len(it) + 1 for it in words[:segment]), len(words[segment])
@@ -158,7 +160,7 @@ def _in_key(mark: _Mark, param: Param) -> Site:
     return site._replace(together=id(key))
 
 
-def _values(
+def _value_sites(
     job: _Job, key: yaml.ScalarNode, scalars: list[yaml.Node], param: Param | None, reach: str
 ) -> None:
     kind = param.kind if param else ""

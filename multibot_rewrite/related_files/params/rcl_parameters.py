@@ -38,8 +38,8 @@ _ESCAPED = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x20
 
 
 def parameters_text(nodes: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return the parameter file of nodes, by full name or pattern, as JSON: rcl reads that as YAML, and
-    never takes its strings for another type."""
+    """Return the parameter file of nodes, by full name or pattern, as JSON."""
+    # rcl reads that as YAML, and never takes its strings for another type.
     data = {full: {"ros__parameters": dict(values)} for full, values in nodes.items()}
     return json.dumps(data, ensure_ascii=False).translate(_ESCAPED)
 
@@ -77,19 +77,19 @@ def _flat_settings(document: YamlText, body: yaml.Node) -> Iterator[tuple[str, V
 def value_of(document: YamlText, node: yaml.Node) -> Value:
     """Return the value that rcl reads from a YAML node."""
     if isinstance(node, yaml.ScalarNode):
-        return _scalar(document, node)
+        return _scalar_value(document, node)
     assert isinstance(node, yaml.SequenceNode)
     if not all(isinstance(item, yaml.ScalarNode) for item in node.value):
         what = "a list holds a list or a map; rcl takes single values only"
         raise refused(document, node, what)
-    items = [_scalar(document, item) for item in node.value]
+    items = [_scalar_value(document, item) for item in node.value]
     if len({type(item) for item in items}) > 1:
         what = "the list mixes types, which rcl rejects; write all as floats, or quote all"
         raise refused(document, node, what)
     return items
 
 
-def _scalar(document: YamlText, node: yaml.ScalarNode) -> Scalar:
+def _scalar_value(document: YamlText, node: yaml.ScalarNode) -> Scalar:
     tagged = document.text.startswith("!", node.start_mark.index) and node.tag == _STRING
     if tagged or node.style in ("'", '"'):
         return str(node.value)

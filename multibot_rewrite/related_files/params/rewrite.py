@@ -89,12 +89,12 @@ def rewrite_params(
         ]
         template = make_template(document.text, [it for it in made if isinstance(it, Splice)])
         pieces = (document.bom + template.pieces[0], *template.pieces[1:])
-        return RelatedFile(FileTemplate(pieces), file, _once(made))
+        return RelatedFile(FileTemplate(pieces), file, _once_each(made))
 
 
 def rewrite_values(job: ParamsJob) -> RelatedFile:
-    """Return parameters of one node with slots for a robot; no other file is read, nothing
-    inserted. Raises InputError as ``rewrite_params``."""
+    """Return parameters of one node with slots for a robot; raises as ``rewrite_params``."""
+    # No other file is read, nothing inserted.
     with gc_paused():
         check_no_slots(job.document.text, job.document.file)
         file = read_params(job.document, job.context, job.known)
@@ -102,11 +102,11 @@ def rewrite_values(job: ParamsJob) -> RelatedFile:
         pages = (it for it in file.pages if not it[0].shared)
         made = [one for it in pages for one in name_splices(job, *it)]
         splices = [it for it in made if isinstance(it, Splice)]
-        return RelatedFile(make_template(job.document.text, splices), file, _once(made))
+        return RelatedFile(make_template(job.document.text, splices), file, _once_each(made))
 
 
-def _once(made: Iterable[Splice | Finding]) -> tuple[Finding, ...]:
-    """Return the findings, one for those that are the same at many places; slots read ``<robot>``."""
+def _once_each(made: Iterable[Splice | Finding]) -> tuple[Finding, ...]:
+    """Return findings, equal ones once, with ``<robot>`` in place of slots."""
     findings = [it for it in made if isinstance(it, Finding)]
     first: dict[tuple[str, str], Finding] = {}
     for found in sorted(findings, key=lambda it: (it.line, it.column, it.code)):
@@ -121,8 +121,8 @@ def _once(made: Iterable[Splice | Finding]) -> tuple[Finding, ...]:
 def read_params(
     document: YamlText, context: Context, known: KnownNodes, own: Collection[str] = ()
 ) -> NamedFile:
-    """Return the names of a file; ``own`` are words for the one robot that it is for. Raises InputError
-    for a file that is not a parameter file or that rcl rejects."""
+    """Return the names of a parameter file; ``own`` are the names of its one robot."""
+    # Raises InputError for another file, or one that rcl rejects.
     found = without_own(raw_sections(document), own)
     sections = identify_sections(found, context, known)
     pages = tuple(
@@ -137,7 +137,7 @@ def read_params(
         for found, in_key in ((page.unclaimed, False), (page.keys, True))
         for it in found
     )
-    names = (*(site for it in sections for site in _keys(it, own)), *sites)
+    names = (*(site for it in sections for site in _section_keys(it, own)), *sites)
     return NamedFile(
         PARAMS,
         document.file,
@@ -161,9 +161,9 @@ def _own_names(section: ParamSection, found: SectionNames) -> SectionNames:
     return NO_NAMES._replace(sites=patterns) if section.shared else found
 
 
-def _keys(section: ParamSection, own: Collection[str]) -> Iterator[Site]:
-    """Yield the keys above a section, without the robot that the file is for. A namespace that is the
-    root's or the robot's alone is no name of a node."""
+def _section_keys(section: ParamSection, own: Collection[str]) -> Iterator[Site]:
+    """Yield the keys above a section, without the robot that the file is for."""
+    # A namespace that is the root's or the robot's alone is no name of a node.
     first, *rest = section.keys
     bare = first.value.strip("/")
     words = (it for it in own if f"{bare}/".startswith(f"{it}/"))
@@ -184,7 +184,7 @@ def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Sp
     made: list[Splice | Finding] = []
     for section in sections:
         kept = section.shared or section.full == section.path
-        texts = [key.value for key in section.keys] if kept else _texts(section)
+        texts = [key.value for key in section.keys] if kept else _new_key_texts(section)
         for key, text in zip(section.keys, texts, strict=True):
             _, other = new.setdefault(id(key), (key, text))
             if other != text:
@@ -200,7 +200,7 @@ def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Sp
     return made
 
 
-def _texts(section: ParamSection) -> list[str]:
+def _new_key_texts(section: ParamSection) -> list[str]:
     """Return the full name, divided over the keys as before; the namespace goes into the first key."""
     tokens = section.full.strip("/").split("/")
     texts = []

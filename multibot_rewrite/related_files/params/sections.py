@@ -95,7 +95,7 @@ def _other_kind(document: YamlText) -> InputError:
 
 
 def _looks_like(root: yaml.Node | None) -> str:
-    """Return what a file without parameters seems to be; empty where nothing says it."""
+    """Return what a file without parameters seems to be; empty if unknown."""
     if root is None:
         return f"it is empty; {_TO_DO}"
     if isinstance(root, yaml.SequenceNode):
@@ -144,7 +144,7 @@ def identify_sections(
     """Return the sections with their known nodes, and the names these run under."""
     found = list(found)
     types = controller_types(found)
-    made = [_section(it, context, known, types) for it in found]
+    made = [_identified_section(it, context, known, types) for it in found]
     wild = [it for it in made if it.wild and it.node]
     # The packages that the file is for: parameters alone tell a node in any namespace.
     packages = {
@@ -162,7 +162,7 @@ def identify_sections(
     return [it._replace(node=None) if is_namesake(it) else it for it in made]
 
 
-def _section(
+def _identified_section(
     it: RawSection, context: Context, known: KnownNodes, types: Mapping[str, str]
 ) -> ParamSection:
     name = it.path.rpartition("/")[2]
@@ -228,25 +228,25 @@ def is_for(section: str, full: str) -> bool:
         return section.strip("/") == full.strip("/")
     parts = section.strip("/").split("/")
     # The numbers of parts that the words up to here fill; all ways are followed at once.
-    filled = _skipped({0}, parts)
+    filled = _with_skipped({0}, parts)
     for word in full.strip("/").split("/"):
         fit = [at for at, part in enumerate(parts) if at in filled and part in ("**", "*", word)]
-        filled = _skipped({at + (parts[at] != "**") for at in fit}, parts)
+        filled = _with_skipped({at + (parts[at] != "**") for at in fit}, parts)
     return len(parts) in filled
 
 
 def meant_for(
     sections: Sequence[RawSection], reader: str, nodes: Collection[str]
 ) -> RawSection | None:
-    """Return the section with a ``reader``'s name in another namespace, which the reader does not
-    get; None if one of that name is for it, or for another node."""
+    """Return the section that the ``reader`` of that name does not get, since it is elsewhere."""
+    # None if a section of that name is for it, or if this one is for another node.
     own = [it for it in sections if it.path.rpartition("/")[2] == reader.rpartition("/")[2]]
     if any(is_for(it.path, reader) for it in own):
         return None
     return next((it for it in own if not any(is_for(it.path, node) for node in nodes)), None)
 
 
-def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
+def _with_skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
     """Return the positions with those after each ``**``, which may match nothing."""
     for at, part in enumerate(parts):
         if at in filled and part == "**":
@@ -255,8 +255,8 @@ def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
 
 
 def settings(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.ScalarNode, yaml.Node]]:
-    """Yield every parameter by its dotted name, with its key and value; nested and dotted keys are
-    the same. ``above`` is before all names."""
+    """Yield every parameter by dotted name behind ``above``, with key and value."""
+    # Nested and dotted keys are the same.
     for key, value in pairs(node):
         name = f"{above}{key.value}"
         if below := names_below(value):

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that a file does not set, with a default that all robots would share: lines to insert.
-Nodes and controllers that no section is for: sections with what must differ by robot. And a robot's
-file in the form that nav2_bringup takes: its sections have no namespace.
+"""Inserts what a parameter file lacks and robots would share; writes files for nav2_bringup.
 
 Without a section a node runs with its defaults: amcl looks for base_footprint, and a controller
-puts an empty prefix before joints, where the description of each robot has another name.
-
-The launch files there put a file below the robot's namespace (RewrittenYaml with ``root_key``), so a
-namespace of its own would be there twice, and rcl refuses ``/robot1//robot1/``. slam_toolbox is the one
-node that gets the file as it is, and only if the file has a key of that name (HasNodeParams).
-Sources: nav2_bringup launch/slam_launch.py, nav2_common rewritten_yaml.py and has_node_params.py, all
-releases from humble (1.1.20) to rolling (a3a97043e)."""
+puts an empty prefix before joints, where the description of each robot has another name. The
+launch files of nav2_bringup put a file below the robot's namespace (RewrittenYaml with
+``root_key``), so a namespace of its own would be there twice, and rcl refuses
+``/robot1//robot1/``. slam_toolbox is the one node that gets the file as it is, and only if the
+file has a key of that name (HasNodeParams). Sources: nav2_bringup launch/slam_launch.py,
+nav2_common rewritten_yaml.py and has_node_params.py, all releases from humble (1.1.20) to
+rolling (a3a97043e)."""
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -72,7 +70,7 @@ class DefaultLine(NamedTuple):
 def default_lines(
     job: ParamsJob, pages: Sequence[tuple[ParamSection, SectionNames]], beside: Sequence[RawSection]
 ) -> Iterator[Splice | Finding]:
-    """Yield lines for the first section of each known node, without those that ``beside`` sets."""
+    """Yield lines for the first section of each known node, unless another file sets them."""
     # What is set for which nodes, if patterns or other files set more than the section itself.
     several = beside or any(it.wild for it, _ in pages)
     bodies = [(it.full, it.body) for it, _ in pages] if several else []
@@ -165,9 +163,8 @@ def not_inserted(
 def lacking_sections(
     job: ParamsJob, found: Sequence[RawSection], beside: Iterable[RawSection], is_first: bool
 ) -> Iterator[Splice | Finding]:
-    """Yield the sections that a file lacks, to be added at its end. ``found`` are those it has,
-    ``beside`` those of the robot's other files. The first file gets those of the node set's nodes as
-    well."""
+    """Yield the sections to add that neither this file nor the robot's others have."""
+    # The first file gets those of the node set's nodes as well.
     every, lacking = [*found, *beside], []
     named = {it.path.rpartition("/")[2] for it in every}
     for manager in (it for it in found if it.path.rpartition("/")[2] == MANAGER):
@@ -177,11 +174,11 @@ def lacking_sections(
             path = f"{manager.path.removesuffix(MANAGER)}{name}"
             here = _set_by_all(path, every)
             if lines := list(missing_defaults(job.context, node, here)) if node else []:
-                lacking.append((_key(path, job.context), lines))
-    lacking += _of_nodes(job.context, job.known, job.at_run_time, every) if is_first else ()
+                lacking.append((_section_key(path, job.context), lines))
+    lacking += _lacking_nodes(job.context, job.known, job.at_run_time, every) if is_first else ()
     if takes_sections(job.document):
         end, at = newline(job.document), len(job.document.text)
-        text = "".join(f"{line}{end}" for it in lacking for line in _section(*it))
+        text = "".join(f"{line}{end}" for it in lacking for line in _section_lines(*it))
         yield lines_inserted(job.document, at, text)
         return
     for key, lines in lacking:
@@ -190,8 +187,8 @@ def lacking_sections(
 
 def all_sections(context: Context, known: KnownNodes, at_run_time: Collection[str]) -> str:
     """Return the sections of a robot without a parameter file, with slots; possibly empty."""
-    lacking = _of_nodes(context, known, at_run_time, ())
-    return "".join(f"{line}\n" for it in lacking for line in _section(*it))
+    lacking = _lacking_nodes(context, known, at_run_time, ())
+    return "".join(f"{line}\n" for it in lacking for line in _section_lines(*it))
 
 
 def takes_sections(document: YamlText) -> bool:
@@ -202,7 +199,7 @@ def takes_sections(document: YamlText) -> bool:
     return plain and root is not None and root.start_mark.column == 0 and not ends
 
 
-def _of_nodes(
+def _lacking_nodes(
     context: Context, known: KnownNodes, at_run_time: Collection[str], every: Sequence[RawSection]
 ) -> Iterator[tuple[str, list[DefaultLine]]]:
     """Yield the full names of nodes of the node set without a section, and the lines they need."""
@@ -228,18 +225,18 @@ def _set_by_all(path: str, every: Iterable[RawSection]) -> set[str]:
     return {name for it in fitting for name, _ in flattened(it.body)}
 
 
-def _key(path: str, context: Context) -> str:
+def _section_key(path: str, context: Context) -> str:
     *above, name = path.strip("/").split("/")
     if any(it in ANY or PLACEHOLDER.search(it) for it in above):
         return f"/**/{spelled(context.topics.naming, NAMESPACE_SLOT, 'node', name)}"
     return full_name("/".join((*above, name)), context.topics.naming)
 
 
-def _section(full: str, lines: Sequence[DefaultLine]) -> Iterator[str]:
-    """Yield the lines of a section. A node in a namespace below the robot's gets nested keys: after
-    a key with a slash that is not at the top rcl takes the next section for one of that namespace
-    (rcl_yaml_param_parser namespace.c, ``rem_name_from_ns``), and nav2_bringup puts a key above all
-    of them."""
+def _section_lines(full: str, lines: Sequence[DefaultLine]) -> Iterator[str]:
+    """Yield the lines of a section, with nested keys for a node below the robot's namespace."""
+    # After a key with a slash that is not at the top rcl takes the next section for one of that
+    # namespace (rcl_yaml_param_parser namespace.c, ``rem_name_from_ns``), and nav2_bringup puts a
+    # key above all of them.
     yield from dict.fromkeys(it.comment for it in lines)
     *above, name = full.strip("/").split("/")
     keys = (f"/{'/'.join(above)}", name) if len(above) > 1 else (full,)
@@ -275,7 +272,7 @@ def for_bringup(
     started. Raises InputError for a file that rcl rejects.
     """
     sections = {id(it.keys[0]): it for it in raw_sections(document)}
-    made = [it for section in sections.values() for it in _changed(document, section, namespace)]
+    made = [it for section in sections.values() for it in _new_key(document, section, namespace)]
     splices = [it for it in made if isinstance(it, Splice)]
     findings = tuple(it for it in made if isinstance(it, Finding))
     named = {below_namespace(it.path, namespace) for it in sections.values()}
@@ -285,7 +282,7 @@ def for_bringup(
     return spliced(document, splices) + behind, findings
 
 
-def _changed(document: YamlText, section: RawSection, namespace: str) -> Iterator[Splice | Finding]:
+def _new_key(document: YamlText, section: RawSection, namespace: str) -> Iterator[Splice | Finding]:
     """Yield the new key of a section, with more values if it is the first below that key."""
     key = section.keys[0]
     below = below_namespace(key.value, namespace)

@@ -13,7 +13,12 @@ from multibot_rewrite.knowledge.node_entries import GRAPH_NAME_KINDS, RUN_TIME, 
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
 from multibot_rewrite.related_files.context import NAMESPACE_SLOT, TAG_SLOT, Context
 from multibot_rewrite.related_files.engine import GRAPH, spell_site, splices_of, written
-from multibot_rewrite.related_files.names.by_kind import SPELLERS, is_component, is_plain
+from multibot_rewrite.related_files.names.by_kind import (
+    SPELLERS,
+    is_component,
+    is_emptied,
+    is_plain,
+)
 from multibot_rewrite.related_files.names.node_topics import Facts, TopicText
 from multibot_rewrite.related_files.names.placeholders import filled, is_robot
 from multibot_rewrite.related_files.names.rename_map import KINDS, is_declared
@@ -76,8 +81,9 @@ class ParamsJob(NamedTuple):
 
 
 def clock_splices(job: ParamsJob, section: ParamSection) -> Iterator[Splice]:
-    """Yield the fleet file's clock in place of a section's own. From Jazzy on a file counts more than
-    the launch argument of nav2_bringup, and nodes of one robot need one clock."""
+    """Yield the fleet file's clock in place of a section's own."""
+    # From Jazzy on a file counts more than the launch argument of nav2_bringup, and nodes of one
+    # robot need one clock.
     if job.clock is None or section.shared:
         return
     text = "true" if job.clock else "false"
@@ -99,10 +105,10 @@ def name_splices(
     document = job.document
     yield from splices_of(document.text, document.file, ((it, new.text) for it, new in made))
     for site, new in made:
-        yield from _about_topic(job, site, new)
+        yield from _topic_findings(job, site, new)
     for site in names.sites:
         if site.kind in SWITCH_KINDS:
-            yield from _switched(job, site)
+            yield from _switch_off(job, site)
     # Values that are not known to be names, with what stands for the robot in them filled in.
     for scalar in (*names.unclaimed, *names.kept):
         text = filled(str(scalar.value), NAMESPACE_SLOT)
@@ -125,6 +131,8 @@ def _new_name(job: ParamsJob, site: Site, stays: bool) -> TopicText:
         # No prefix where frames have it already.
         run_time = job.context.names.naming.layout.at_run_time
         return TopicText(renamed(job.context, site) if run_time else "")
+    if is_emptied(job.context, site.kind, site.text) and not site.in_key:
+        return TopicText("")
     if site.bare and is_plain(site.text):
         site = site._replace(text=site.text.removeprefix("/"))
     if site.in_key or site.kind not in GRAPH:
@@ -168,7 +176,7 @@ MADE_ABSOLUTE = declare(
 )
 
 
-def _about_topic(job: ParamsJob, site: Site, made: TopicText) -> Iterator[Finding]:
+def _topic_findings(job: ParamsJob, site: Site, made: TopicText) -> Iterator[Finding]:
     if made.wrong_target:
         message = f"{site.key}: remap rules turn {made.text} into {made.wrong_target}"
         hint = "remove the name from the remap rules of this node or from this file"
@@ -190,9 +198,9 @@ UNCLEAR_SWITCH = declare(
 )
 
 
-def _switched(job: ParamsJob, site: Site) -> Iterator[Splice | Finding]:
-    """Yield the change that turns off a node's switch or prefix for frames that are renamed already. A
-    default says what an empty prefix means."""
+def _switch_off(job: ParamsJob, site: Site) -> Iterator[Splice | Finding]:
+    """Yield the change that turns off a switch or prefix for frames that are renamed already."""
+    # A default says what an empty prefix means.
     is_off, text = site.kind == "off", site.text
     wanted = "false" if is_off else NO_PREFIX
     if is_off and text.lower() in ("true", "yes", "on", "y"):

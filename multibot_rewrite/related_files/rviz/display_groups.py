@@ -50,8 +50,7 @@ Wanted = Callable[[RvizItem], bool]
 
 
 class RvizJob(NamedTuple):
-    """A config to rewrite, the robots of one window and their colours (None: unchanged), and the
-    displays that each robot needs for itself, by their place in the text."""
+    """A config to rewrite, robots of a window, colours (None: unchanged), own displays by place."""
 
     config: RvizConfig
     robots: Robots
@@ -112,7 +111,7 @@ def robot_groups(job: RvizJob) -> Iterator[Splice]:
     for one in shown:
         yield from _kept_parts(one, shared, lambda leaf: entries(document, leaf, job.robots))
     rows = [remark(document, one) for one in leaves(shown) if for_one_process(one)]
-    rows += [_group(job, at) for at in range(len(job.robots))]
+    rows += [_group_of_robot(job, at) for at in range(len(job.robots))]
     yield inserted(document, shown[-1].block.end, "".join(rows))
 
 
@@ -129,7 +128,7 @@ def _kept_parts(
         yield from made(one)
 
 
-def _group(job: RvizJob, at: int) -> str:
+def _group_of_robot(job: RvizJob, at: int) -> str:
     """Return the group of one robot: copies of the displays with its names; empty if it has none."""
     document, robot = job.config.document, job.robots[at]
 
@@ -242,7 +241,7 @@ def panels(job: RvizJob) -> Iterator[Splice]:
         # Tree paths that start at a display that is in a group now are removed.
         expanded = value(value(panel.node, "Property Tree Widget"), "Expanded")
         if isinstance(expanded, yaml.SequenceNode) and is_block(expanded):
-            gone = _gone(job)
+            gone = _moved_paths(job)
             found = list(zip(expanded.value, blocks(document, expanded), strict=True))
             left = [block for item, block in found if gone.match(str(item.value))]
             if found and len(left) == len(found):
@@ -250,20 +249,20 @@ def panels(job: RvizJob) -> Iterator[Splice]:
             else:
                 yield from (Splice(block.start, block.end, "") for block in left)
         source = value(panel.node, "SyncSource")
-        for one in _docks(job):
+        for one in _own_windows(job):
             if isinstance(source, yaml.ScalarNode) and one.name == source.value != "":
                 yield replaced(source, titled(one, job.robots[0]))
                 break
 
 
-def _docks(job: RvizJob) -> list[RvizItem]:
+def _own_windows(job: RvizJob) -> list[RvizItem]:
     """Return the displays with a window that each robot has for itself."""
     own = (one for one in leaves(job.config.displays) if one.block.start in job.own)
     return [one for one in own if one.flag == DOCK]
 
 
-def _gone(job: RvizJob) -> re.Pattern[str]:
-    """Return how paths to displays start that are in groups now: a name and its number."""
+def _moved_paths(job: RvizJob) -> re.Pattern[str]:
+    """Return a pattern for paths to displays that are in groups now."""
     shown = job.config.displays
     kept = {one.name for one in shown if any(it.block.start not in job.own for it in leaves([one]))}
     names = sorted({one.name for one in shown} - kept)
@@ -273,7 +272,7 @@ def _gone(job: RvizJob) -> re.Pattern[str]:
 def windows(job: RvizJob) -> Iterator[Splice]:
     """Yield the places of windows, for the copies too; Qt's hex state is removed."""
     document = job.config.document
-    docks = _docks(job)
+    docks = _own_windows(job)
     titles = {one.name: one for one in docks}
     if not docks and not any(map(for_one_process, job.config.panels)):
         return

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An RViz config as records: displays, tools and panels, where each holds a name, and the value of
-that name for a robot."""
+"""An RViz config as records: displays, tools and panels, their names, and these for a robot."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from colorsys import hls_to_rgb
@@ -76,7 +75,7 @@ def read_config(document: YamlText) -> RvizConfig:
         raise InputError(
             f"{document.file}: not an RViz config: it has no {MANAGER!r}; save it with rviz2"
         )
-    for node in _maps(document.root):
+    for node in _all_maps(document.root):
         cls = text_of(node, "Class")
         if cls.startswith(ROS1):
             what = f"this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
@@ -92,11 +91,11 @@ def read_config(document: YamlText) -> RvizConfig:
     )
 
 
-def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
+def _all_maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
     if isinstance(node, yaml.MappingNode):
         yield node
     for item in node.value if isinstance(node, yaml.CollectionNode) else ():
-        yield from _maps(item[1] if isinstance(item, tuple) else item)
+        yield from _all_maps(item[1] if isinstance(item, tuple) else item)
 
 
 def _items_of_list(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[RvizItem]:

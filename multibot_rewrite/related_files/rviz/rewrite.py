@@ -70,8 +70,9 @@ PROVED = 4
 
 
 class RvizText(NamedTuple):
-    """A config. ``robot`` is empty if it shows all robots. rviz2 must be started with ``namespace``
-    and ``remaps``; ``relays`` are topics that must be forwarded first (from, to)."""
+    """A config; ``robot`` is empty if it shows all, ``relays`` (from, to) must be forwarded first.
+
+    rviz2 must be started with ``namespace`` and ``remaps``."""
 
     robot: str
     text: str
@@ -96,14 +97,14 @@ def rewrite_rviz(
     config = read_config(document)
     naming = robots[0].names.naming
     together = not naming.layout.tf_per_robot or (relayed and naming.layout.frames)
-    colours = tuple(_colour(robot, at, len(robots)) for at, robot in enumerate(robots))
+    colours = tuple(_robot_colour(robot, at, len(robots)) for at, robot in enumerate(robots))
     world = world or world_frame(naming)
 
     def make(upto: int) -> tuple[RvizText, ...]:
         some = robots[:upto] if not together or has_own_windows(config, robots[0]) else ()
-        each = map(lambda *it: _for_one(config, *it), some, colours)
+        each = map(lambda *it: _window_for_one(config, *it), some, colours)
         return (
-            *([_for_all(config, robots[:upto], colours[:upto], world)] if together else ()),
+            *([_window_for_all(config, robots[:upto], colours[:upto], world)] if together else ()),
             *each,
         )
 
@@ -131,7 +132,7 @@ def start_command(made: RvizText, file: str) -> list[str]:
     return ["rviz2", "-d", file, *(["--ros-args", *given] if given else [])]
 
 
-def _colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
+def _robot_colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
     """Return the robot's colour; one of several robots without a colour gets one of the palette."""
     if robot.colour:
         return read_colour(robot.colour, robot.name)
@@ -149,7 +150,7 @@ def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
     return tuple(found)
 
 
-def _for_all(
+def _window_for_all(
     config: RvizConfig, robots: Sequence[RvizRobot], colours: tuple[Colour | None, ...], world: str
 ) -> RvizText:
     job = make_rviz_job(config, robots, colours)
@@ -165,13 +166,13 @@ def _for_all(
         *panels(job),
         *windows(job),
         *fixed,
-        *_views(config, robots),
+        *_view_splices(config, robots),
     ]
     relays = [(target, topic) for robot in robots for topic, target in _tf_topics(robot)]
     return RvizText("", spliced(config.document, splices), relays=tuple(relays))
 
 
-def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> RvizText:
+def _window_for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> RvizText:
     """Return the config of a window for one robot, which runs in its namespace if there is one."""
     document = config.document
     gone = (ABSOLUTE,) if robot.has_process else (ABSOLUTE, PROCESS)
@@ -200,7 +201,7 @@ def frame_splices(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
     return [replaced(node, new)] if isinstance(node, yaml.ScalarNode) and new != node.value else []
 
 
-def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
+def _view_splices(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
     """Yield the splices of views: the current one for the first robot, a saved one for each."""
     document = config.document
     current, saved = views_of(config)

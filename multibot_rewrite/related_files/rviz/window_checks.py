@@ -9,7 +9,7 @@ from typing import TypeGuard
 import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
-from multibot_rewrite.planning.plan import tf_topic
+from multibot_rewrite.planning.planned_system import tf_topic
 from multibot_rewrite.related_files.rviz.display_groups import Robots, for_one_process, leaves
 from multibot_rewrite.related_files.rviz.read_config import (
     ABSOLUTE,
@@ -26,7 +26,7 @@ from multibot_rewrite.related_files.yaml_text import found_at, pairs
 ONE_TF_TOPIC = declare("MF203", "rviz-one-tf-topic", WARNING, formats=("fleet",))
 
 
-def _tf_topic(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
+def _tf_topic_findings(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
     layout = robots[0].names.naming.layout
     if together and not layout.tf_per_robot:
         return
@@ -54,7 +54,7 @@ FIRST_ROBOT_VIEW = declare("MF213", "rviz-view-follows-first-robot", WARNING, fo
 LEFT_OUT = declare("MF202", "rviz-panel-left-out", WARNING, formats=("rviz",))
 
 
-def _left_out(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
+def _left_out_items(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
     everywhere = all(it.has_process for it in robots)
     for one in (*leaves(config.displays), *config.tools, *config.panels):
         if for_one_process(one) and not (everywhere and one.flag == PROCESS):
@@ -81,7 +81,7 @@ def config_findings(
 
     ``together``: one window shows all ``robots``, in the frame ``world``.
     """
-    found = [*_tf_topic(config, robots, together), *_left_out(config, robots)]
+    found = [*_tf_topic_findings(config, robots, together), *_left_out_items(config, robots)]
     found += _in_one_window(config, robots, world) if together else ()
     yield from sorted(found, key=lambda it: (it.line, it.column, it.code))
 

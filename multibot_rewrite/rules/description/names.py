@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MB3: how names are written: those of links, joints and the robot that are not valid in URDF, SDF
-or tf, and those that are not valid in ROS: frames, topics, interfaces.
-"""
+"""MB3: names of links, joints, robots, frames, topics and interfaces that some reader refuses."""
 
 from __future__ import annotations
 
@@ -26,7 +24,6 @@ from multibot_rewrite.related_files.named_file import EVERY
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import simulated
 from multibot_rewrite.rules.subject import Subject
-from multibot_rewrite.system.records import HARDWARE_NODE
 
 WORLD = "world"
 
@@ -228,6 +225,7 @@ def _hardware_without_node(subject: Subject) -> Iterator[Problem]:
         if fault is None or SUBSTITUTION in name or system in in_simulator:
             continue
         from multibot_rewrite.knowledge.node_sets import built_in  # hardly any name is wrong
+        from multibot_rewrite.system.records import HARDWARE_NODE
 
         if HARDWARE_NODE in built_in(subject.settings.distro).nodes:
             message = (

@@ -37,7 +37,7 @@ def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
 Audit = Callable[[Inventory, Tree], Iterator[Problem]]
 
 
-def _audit(audit: Audit, subject: Subject) -> Iterator[Problem]:
+def _audit_problems(audit: Audit, subject: Subject) -> Iterator[Problem]:
     """Yield what a check of the plugin definitions finds in a document."""
     return audit(subject.inventory, subject.tree)
 
@@ -47,22 +47,22 @@ def _unknown_parts(subject: Subject) -> tuple[Problem, ...]:
     return tuple(unknown_parts(subject.inventory, subject.tree))
 
 
-def _unknown(code: str, subject: Subject) -> Iterator[Problem]:
+def _unknown_of_code(code: str, subject: Subject) -> Iterator[Problem]:
     """Yield the unknown plugins and hardware of a document that have this code."""
     return (it for it in _unknown_parts(subject) if it.code == code)
 
 
-unknown_plugin = rule("MB902", "unknown-plugin", NOTE)(partial(_unknown, "MB902"))
+unknown_plugin = rule("MB902", "unknown-plugin", NOTE)(partial(_unknown_of_code, "MB902"))
 
-unknown_hardware_class = rule("MB903", "unknown-hardware", NOTE)(partial(_unknown, "MB903"))
+unknown_hardware_class = rule("MB903", "unknown-hardware", NOTE)(partial(_unknown_of_code, "MB903"))
 
-parameter_of_ros_1 = rule("MB904", "parameter-of-ros-1", NOTE)(partial(_audit, other_ros))
+parameter_of_ros_1 = rule("MB904", "parameter-of-ros-1", NOTE)(partial(_audit_problems, other_ros))
 
 row_of_another_release = rule(
     "MB905",
     "row-of-another-release",
     NOTE,
     options={"definitions": ["my.vocab"], "distro": "lyrical"},
-)(partial(_audit, other_releases))
+)(partial(_audit_problems, other_releases))
 
-included_model = rule("MB906", "included-model", NOTE)(partial(_unknown, "MB906"))
+included_model = rule("MB906", "included-model", NOTE)(partial(_unknown_of_code, "MB906"))

@@ -42,8 +42,10 @@ _UPRIGHT, _CROSS, _STEP = 0.9, 0.3, 0.01
 
 
 class Tags(NamedTuple):
-    """How a plugin calls its wheels and their sizes. ``radius_of`` is the radius in its unit: 0.5 for a
-    diameter. ``turns_left`` says that the left wheels are slower in a turn to the left."""
+    """How a plugin calls its wheels and their sizes.
+
+    ``radius_of`` is the radius in its unit: 0.5 for a diameter. ``turns_left`` says that the left
+    wheels are slower in a turn to the left."""
 
     left: Sequence[str]
     right: Sequence[str]
@@ -78,8 +80,7 @@ TAGS: Mapping[str, tuple[Tags, ...]] = {
 
 
 class Wheel(NamedTuple):
-    """A driven wheel in the root's frame: its joint, the pose of its link, the axis it turns
-    about, and the element that names it."""
+    """A driven wheel in the root's frame: joint, link's pose, axis, and the element that names it."""
 
     named: Any
     joint: Joint
@@ -88,8 +89,9 @@ class Wheel(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """A plugin, its wheels, and the elements of its sizes, None where it takes its default. ``robot``
-    has the links of the wheels: of an SDF those of the model that the plugin is in."""
+    """A plugin, its wheels, and the elements of its sizes, None where it takes its default.
+
+    ``robot`` has the links of the wheels: of an SDF those of the model that the plugin is in."""
 
     robot: Robot
     plugin: _Element
@@ -121,7 +123,7 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
     for plugin, section in subject.inventory.served:
         kinds = next((TAGS[it] for it in section.names if it in TAGS), ())
         names = {tag for it in kinds for tag in (*it.left, *it.right)}
-        model = _model_of(plugin) if names else None
+        model = _wheels_of_model(plugin) if names else None
         for element in plugin.iterchildren(*names) if names else ():
             name = text_of(element)
             of_model = model.wheels.get(name) if model else None
@@ -130,13 +132,14 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
                 yield element, joint
 
 
-def _model_of(plugin: _Element) -> ModelWheels | None:
+def _wheels_of_model(plugin: _Element) -> ModelWheels | None:
     above = plugin.getparent()
     return model_wheels(above) if above is not None and above.tag == "model" else None
 
 
 def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
-    model = _model_of(plugin)
+    """Return the drive that a plugin is; None if it names no wheels on both sides."""
+    model = _wheels_of_model(plugin)
     for tags in kinds:
         left, right = (tuple(_wheels(subject, model, plugin, it)) for it in (tags.left, tags.right))
         if left and right:
@@ -149,6 +152,7 @@ def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive |
 def _wheels(
     subject: Subject, model: ModelWheels | None, plugin: _Element, tags: Sequence[str]
 ) -> Iterator[Wheel]:
+    """Yield the wheels that a plugin names by these tags."""
     for it in plugin.iterchildren(*tags):
         name = text_of(it)
         if model is None:
@@ -188,8 +192,7 @@ class Measured(NamedTuple):
 
 
 def separation(robot: Robot, left: Wheel, right: Wheel, several: bool) -> Measured | None:
-    """Return how far two wheels are apart, by their joints or shapes; None if their axes are not
-    parallel. ``several`` wheels of a side skid in a turn."""
+    """Return how far two wheels are apart; None if not parallel. ``several`` of a side skid."""
     if abs(dot(left.axis, right.axis)) < ALONG:
         return None
     slack = TOLERANCE if radii(robot, left) else UNSEEN
@@ -213,9 +216,7 @@ def radius(robot: Robot, wheels: Iterable[Wheel]) -> Measured | None:
 
 
 def are_swapped(left: Wheel, right: Wheel) -> float:
-    """Return how far the left wheel is on the right, seen in the direction in which a positive
-    speed turns them; 0 if it is on the left, or unknown. A wheel that turns about an axis to the
-    left rolls forward."""
+    """Return how far the left wheel is on the right, if both roll forward; 0 if left or unknown."""
     if dot(left.axis, right.axis) < ALONG or abs(left.axis[2]) > 1 - ALONG:
         return 0.0
     across = apart(left.pose.at, right.pose.at, left.axis)
@@ -228,8 +229,7 @@ def are_opposite(left: Wheel, right: Wheel) -> bool:
 
 
 def rolling_faults(robot: Robot, left: Wheel, right: Wheel) -> Iterator[str]:
-    """Yield why two wheels of one axle would not roll: an upright axis, one along the robot's
-    length, a cylinder that turns about its side, wheels at two heights."""
+    """Yield why two wheels of one axle would not roll, such as an upright axis or two heights."""
     for wheel in (left, right):
         name = wheel.joint.name
         if abs(wheel.axis[2]) > _UPRIGHT:
@@ -261,11 +261,10 @@ def lies_flat(robot: Robot, wheel: Wheel) -> bool:
 
 
 def radii(robot: Robot, wheel: Wheel) -> list[float]:
-    """Return the radii of round shapes that turn with a wheel about its axis, of its collisions.
-    Without collisions they are those of its visuals."""
+    """Return the radii of a wheel's round collisions, or of its visuals if it has no collision."""
     for tag in ("collision", "visual"):
         found = []
-        for shape, pose in _shapes(robot, wheel, tag):
+        for shape, pose in _turning_shapes(robot, wheel, tag):
             along = turned(pose.matrix, (0.0, 0.0, 1.0))
             is_round = shape.tag == "sphere" or abs(dot(along, wheel.axis)) > ALONG
             size = number(shape.get("radius")) if is_round else None
@@ -275,7 +274,7 @@ def radii(robot: Robot, wheel: Wheel) -> list[float]:
     return []
 
 
-def _shapes(robot: Robot, wheel: Wheel, tag: str) -> Iterator[tuple[_Element, Pose]]:
+def _turning_shapes(robot: Robot, wheel: Wheel, tag: str) -> Iterator[tuple[_Element, Pose]]:
     """Yield the shapes of all that turns with a wheel, each with its pose."""
     # The links fixed to a wheel, itself first, with their poses in the root.
     found = [(wheel.joint.child, wheel.pose)]
@@ -296,7 +295,7 @@ def middles(robot: Robot, wheel: Wheel) -> list[Vector]:
     """Return where a wheel may be: at its joint, in the middle of its shapes."""
     found = [wheel.pose.at]
     for tag in ("collision", "visual"):
-        extents = (extent_of(shape, pose) for shape, pose in _shapes(robot, wheel, tag))
+        extents = (extent_of(shape, pose) for shape, pose in _turning_shapes(robot, wheel, tag))
         box = around(it for it in extents if it is not None)
         found += [] if box is None else [box.middle]
     return found

@@ -16,7 +16,7 @@ from multibot_rewrite.rules.subject import Subject
 
 def faults(kind: str, subject: Subject) -> Iterator[Problem]:
     """Yield the faults of one kind, which a rule reports."""
-    yield from _by_kind(subject).get(kind, ())
+    yield from _faults_by_kind(subject).get(kind, ())
 
 
 @memoized
@@ -26,12 +26,12 @@ def urdf_faults(subject: Subject) -> tuple[Problem, ...]:
 
 
 @memoized
-def _by_kind(subject: Subject) -> Mapping[str, list[Problem]]:
-    readers = (urdf_faults, _of_srdf, _in_blocks, _of_parameters)
+def _faults_by_kind(subject: Subject) -> Mapping[str, list[Problem]]:
+    readers = (urdf_faults, _srdf_faults, _block_faults, _parameter_faults)
     return lists_by_key((it.code, it) for faults_of in readers for it in faults_of(subject))
 
 
-def _of_srdf(subject: Subject) -> Iterable[Problem]:
+def _srdf_faults(subject: Subject) -> Iterable[Problem]:
     if subject.format != SRDF:
         return ()
     from multibot_rewrite.rules.schema.srdf import srdf_faults  # a URDF needs none of it
@@ -39,7 +39,7 @@ def _of_srdf(subject: Subject) -> Iterable[Problem]:
     return srdf_faults(subject.document.root, subject.beside)
 
 
-def _in_blocks(subject: Subject) -> Iterable[Problem]:
+def _block_faults(subject: Subject) -> Iterable[Problem]:
     """Return the faults below ``<gazebo>``, or in the models of an SDF file."""
     root, release = subject.document.root, subject.settings.distro
     blocks = subject.elements.tops("gazebo")
@@ -51,7 +51,7 @@ def _in_blocks(subject: Subject) -> Iterable[Problem]:
     return block_faults(blocks, subject.robot, release) if blocks else model_faults(root, release)
 
 
-def _of_parameters(subject: Subject) -> Iterator[Problem]:
+def _parameter_faults(subject: Subject) -> Iterator[Problem]:
     """Yield the faults in the parameters of plugins and of hardware."""
     definitions, systems = subject.tree.definitions, subject.elements.tops("ros2_control")
     plugins = simulator_plugins(subject)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What several rules need of one document is computed once and kept with its subject: poses, parts,
-sensors; and what an error may rest on: that nothing elsewhere and no other release makes it right.
+"""What several rules need of one document, computed once and kept with its subject.
 
-What may be right all the same is a warning, or a note.
-"""
+Poses, parts, sensors; and what an error may rest on: that nothing elsewhere and no other release
+makes it right. What may be right all the same is a warning, or a note."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
@@ -70,12 +69,12 @@ def parts(subject: Subject) -> list[LinkPart]:
         link = element.getparent()
         if link is not None and link.tag == "link":
             geometry = geometries.get(element)
-            shape = None if geometry is None else _first(geometry)
+            shape = None if geometry is None else _first_element(geometry)
             found.append(LinkPart(link, element, geometry, shape))
     return found
 
 
-def _first(geometry: _Element) -> _Element | None:
+def _first_element(geometry: _Element) -> _Element | None:
     """Return the first element inside; quick where no comment is before it."""
     if not len(geometry):
         return None
@@ -85,8 +84,10 @@ def _first(geometry: _Element) -> _Element | None:
 
 @memoized
 def level_of_absence(subject: Subject) -> str:
-    """Return the level if a description lacks something: a xacro file may be a part of a robot, or
-    have it behind a condition. What is surely a part has only links with a parent."""
+    """Return the level of what a description lacks, lower if it may be a part of a robot.
+
+    A xacro file may be one, or have it behind a condition. What is surely a part has only links
+    with a parent."""
     robot = subject.robot
     is_part = robot.links and not roots(robot) and any(it not in robot.link for it in robot.below)
     levels = (WARNING, NOTE) if subject.origins else (ERROR, WARNING)

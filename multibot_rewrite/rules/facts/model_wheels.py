@@ -18,8 +18,7 @@ from multibot_rewrite.description.checks.sdf_frames import Frames, Named, ends_o
 
 
 class ModelWheels(NamedTuple):
-    """The links of a model with their shapes, and its joints: each with the pose of its child in the
-    model and the axis there."""
+    """A model's links with their shapes, and its joints: the child's pose and the axis in the model."""
 
     robot: Robot
     wheels: dict[str, tuple[Joint, Pose, Vector]]
@@ -42,11 +41,12 @@ def model_wheels(model: _Element) -> ModelWheels | None:
         return None
     for it in frames.named.values():
         if it.tag == "link":
-            root.append(_link(it))
+            root.append(_urdf_link(it))
     return ModelWheels(read_robot(root), wheels)
 
 
 def _axis(frames: Frames, joint: Named) -> Vector | None:
+    """Return the axis of a joint in the model; None for one that is no vector."""
     written = joint.element.find("axis/xyz")
     axis = (0.0, 0.0, 1.0) if written is None else vector(written.text or "")
     if axis is None or joint.text("axis/use_parent_model_frame") in ("1", "true"):
@@ -55,7 +55,7 @@ def _axis(frames: Frames, joint: Named) -> Vector | None:
     return turned(frames.pose(joint.within(within) if within else joint.name).matrix, axis)
 
 
-def _link(link: Named) -> _Element:
+def _urdf_link(link: Named) -> _Element:
     """Return a link of SDF as one of URDF, without shapes whose pose cannot be read."""
     made = etree.Element("link", name=link.name)
     for written in link.element.iterchildren("collision", "visual"):

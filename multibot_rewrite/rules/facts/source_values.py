@@ -41,8 +41,9 @@ def starts_of(subject: Subject, elements: Collection[_Element]) -> Mapping[_Elem
 
 
 def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = True) -> bool:
-    """Return whether no caller of xacro can set another value. ``start`` is that of the element's
-    tag; ``attribute`` is empty for text. False where that cannot be known. With ``constants``
+    """Return whether no caller of xacro can set another value; False where that is unknown.
+
+    ``start`` is that of the element's tag; ``attribute`` is empty for text. With ``constants``
     $(find ...) and the like count as text."""
     if not subject.origins:
         return True

@@ -75,6 +75,7 @@ def hull(points: Sequence[Point]) -> list[Point]:
 
 
 def _chain(points: Sequence[Point]) -> list[Point]:
+    """Return the points that turn left from each to the next."""
     found: list[Point] = []
     for it in points:
         while len(found) > 1 and side(found[-2], found[-1], it) <= 0:

@@ -36,24 +36,23 @@ _BOTH_WAYS, _IN = DIRECTIONS[:2]
 
 @rule("MB855", "bridge-row", WARNING, formats=(BRIDGE,))
 def bridge_row(file: NamedFile) -> Iterator[Finding]:
-    """Report each fault of each row, and a row that is no item of a list (bridge_config.cpp: 'top
-    level must be a YAML sequence')."""
+    """Report each fault of each row, and a file that is no list of rows."""
     root = file.document.root if file.document else None
     if isinstance(root, yaml.MappingNode):
         hint = "write '- ' before it"
         yield remark_at(root, "the file is no list of rows: none is bridged", hint)
-    for node in _rows(file):
+    for node in _bridge_rows(file):
         yield from (remark_at(*fault) for fault in faults(node))
 
 
-def _rows(file: NamedFile) -> list[yaml.Node]:
+def _bridge_rows(file: NamedFile) -> list[yaml.Node]:
     return items(file.document.root) if file.document else []
 
 
 @rule("MB858", "bridge-key", WARNING, formats=(BRIDGE,))
 def bridge_key(file: NamedFile) -> Iterator[Finding]:
     """Report unknown keys of each row."""
-    for row in map(row_of, _rows(file)):
+    for row in map(row_of, _bridge_rows(file)):
         for name, (key, _) in row.items():
             if name not in KEYS:
                 message = f"the bridge knows no {name!r}, and ignores it"
@@ -64,7 +63,7 @@ def bridge_key(file: NamedFile) -> Iterator[Finding]:
 def not_converted(file: NamedFile) -> Iterator[Finding]:
     """Report rows whose types do not belong together."""
     known: Mapping[str, list[str]] = bridge_data()["pairs"]
-    for node in _rows(file):
+    for node in _bridge_rows(file):
         ros, gz = (text_in(row_of(node), key) for key in TYPES)
         bare, belongs = _without_package(gz), known.get(ros, ())
         others = [it for it, types in known.items() if bare in types]
@@ -99,7 +98,7 @@ def second_model(file: NamedFile) -> Iterator[Finding]:
 @robots_rule("MB890", "bridge-not-per-robot", WARNING, BRIDGE)
 def shared_service(file: NamedFile) -> Iterator[Finding]:
     """Report services that are not those of the world."""
-    for node in _rows(file):
+    for node in _bridge_rows(file):
         service = text_in(row_of(node), SERVICE)
         if service and not service.strip("/").startswith("world/") and not any(faults(node)):
             message = f"service {service!r} is bridged once for all robots"
@@ -126,16 +125,19 @@ class GzTopic(NamedTuple):
 
 @rule("MB879", "bridge-row-without-gz-topic", WARNING, formats=(BRIDGE,), options={"build": True})
 def no_gz_topic(file: NamedFile) -> Iterator[Finding]:
-    """Report rows for a gz topic of the description with another type or direction, and rows that
-    read a missing one although another of their type exists: senders of other types are unknown."""
+    """Report rows whose gz topic the description has with another type or direction, or lacks.
+
+    A missing one only if it is read and another of its type exists: senders of other types are
+    unknown."""
     known: GzTopics | None = file.memo.get(GzTopics)
-    for row in map(row_of, _rows(file) if known else ()):
+    for row in map(row_of, _bridge_rows(file) if known else ()):
         _, node = row.get(GZ) or row.get(BOTH) or (None, None)
         if node is not None and known is not None:
-            yield from _of_row(node, row, known.topics)
+            yield from _topic_faults(node, row, known.topics)
 
 
-def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterator[Finding]:
+def _topic_faults(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterator[Finding]:
+    """Yield what is wrong with the gz topic at a node, of one row."""
     topic = f"/{str(node.value).lstrip('/')}"
     way, type_ = text_in(row, "direction") or _BOTH_WAYS, _without_package(text_in(row, TYPES[1]))
     own = topics.get(topic)
@@ -159,6 +161,7 @@ def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterato
 
 
 def _write(word: str, topic: GzTopic) -> str:
+    """Return the hint to write a word of the description's own topic."""
     return f"write {word}" + (f", see {topic.place}" if topic.place != NOWHERE else "")
 
 

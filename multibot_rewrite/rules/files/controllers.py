@@ -48,12 +48,13 @@ def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
                 place = Place(file.file, keys[near].start_mark.line + 1)
                 yield from _missing(it, f"controller {it.value}", did_you_mean_at(near, place))
         for key, body in controllers_of(manager):
-            yield from _of_one(file, key, body, declared)
+            yield from _lacking_of_controller(file, key, body, declared)
 
 
-def _of_one(
+def _lacking_of_controller(
     file: NamedFile, key: yaml.ScalarNode, body: yaml.Node, declared: Mapping[str, Run]
 ) -> Iterator[Finding]:
+    """Yield what MoveIt uses of one controller and the parameter files lack."""
     name = str(key.value)
     controller = declared.get(name.rpartition("/")[2])
     if controller is None:
@@ -73,10 +74,10 @@ def _of_one(
             yield from _missing(joint, f"joint {joint.value} of {name}", hint)
     facts = beside(file).known.get(controller.fact.known)
     if facts is not None and not controller.unknown_type:
-        yield from _action(key, body, controller, facts)
+        yield from _action_faults(key, body, controller, facts)
 
 
-def _action(
+def _action_faults(
     key: yaml.ScalarNode, body: yaml.Node, controller: Run, facts: NodeFacts
 ) -> Iterator[Finding]:
     """Yield a finding if MoveIt calls an action that the controller does not serve."""
@@ -96,6 +97,7 @@ def _action(
 
 
 def _missing(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
+    """Yield the finding about a name of MoveIt's file; none for a placeholder."""
     # Launch files fill in placeholders.
     if not PLACEHOLDER.search(name):
         yield remark_at(node, f"MoveIt uses {name}, which no parameter file of the robot has", hint)

@@ -120,32 +120,31 @@ def _near_parameter(
     beside = groups.get(above, {})
     if RENAMED.get(last) in beside:
         return beside[RENAMED[last]]
-    near = meant_name(last, beside) or _cut(last, beside) or guesses.nearest(last, beside, MISTYPED)
+    near = (
+        meant_name(last, beside) or _longer(last, beside) or guesses.nearest(last, beside, MISTYPED)
+    )
     return beside.get(near, "") or meant_name(name, known)
 
 
-def _cut(name: str, known: Iterable[str]) -> str:
+def _longer(name: str, known: Iterable[str]) -> str:
     """Return the one known name that continues this one, as ``has_jerk_limits`` does ``has_jerk``."""
     longer = [it for it in known if "_" in name and it.startswith(f"{name}_")]
     return longer[0] if len(longer) == 1 else ""
 
 
 def wrong_types(file: NamedFile) -> Iterator[Finding]:
-    """Report values of another type than that of all declarations of a parameter. It is an error
-    where no release takes the value."""
+    """Report values of another type than declared; an error where no release takes the value."""
     for section in sections(file):
         for it, known in section.known:
             if type_ := _wrong_type(it, of_parameter(known, file.context.distro)):
                 given = _type_of(it.value) if it.value is not None else ""
-                message = f"{section.title}: {it.name} is {_article(given)}, not {_article(type_)}"
+                message = f"{section.title}: {it.name} is {_a_type(given)}, not {_a_type(type_)}"
                 level = ERROR if _is_refused(file, section, it, known) else ""
                 yield remark_at(it.node, message, _other_type(type_, given, it), level)
 
 
 def _is_refused(file: NamedFile, section: Section, it: Setting, known: Sequence[Declared]) -> bool:
-    """Return whether every release refuses a value that its node gets. It is False for a package of
-    the same repository, for values of a release before Humble, and for a costmap's parameters
-    without the namespace that its code gives it."""
+    """Return whether every release refuses a value that its node surely gets."""
     package, around = section.node.package if section.node else "", sources_around(file.file)
     reached = package != "nav2_costmap_2d" or "/" in section.title.partition(":")[0]
     if any(older_nodes(file)) or not reached:
@@ -169,7 +168,7 @@ def _wrong_type(it: Setting, known: Sequence[Declared]) -> str:
     (type_,) = types
     # What code gives as a default may be a variable of any type.
     sure = all(fact.how in (YAML, DEMANDED) for fact in facts) or type_ in ("double", "int", "bool")
-    return type_ if sure and _expected(type_) not in ("", _type_of(it.value)) else ""
+    return type_ if sure and _compared_type(type_) not in ("", _type_of(it.value)) else ""
 
 
 def not_read(file: NamedFile) -> Iterator[Finding]:
@@ -214,12 +213,13 @@ def below_unknown_names(file: NamedFile) -> Iterator[Finding]:
                     listed = section.whole.get(section.at + word.strip("<>"))
                     names = listed.value if listed else None
                     if isinstance(names, list) and names and name not in names:
-                        yield _for_unknown(section, it, name, [str(each) for each in names], word)
+                        yield _unlisted_name(section, it, name, [str(each) for each in names], word)
 
 
-def _for_unknown(
+def _unlisted_name(
     section: Section, it: Setting, name: str, names: Sequence[str], word: str
 ) -> Finding:
+    """Return the finding about a parameter below a name that its list lacks."""
     near = nearest(name, names)
     hint = f"did you mean {near!r}?" if near else "nothing reads it"
     message = f"{section.title}: {it.name} is for {name!r}, which is not in {word.strip('<>')}"
@@ -242,10 +242,10 @@ def of_other_releases(file: NamedFile) -> Iterator[Finding]:
 def out_of_bounds(file: NamedFile) -> Iterator[Finding]:
     """Report values that generate_parameter_library, or the node's code, rejects."""
     for section in sections(file):
-        for it, facts in _declared(section, file.context.distro):
+        for it, facts in _declarations(section, file.context.distro):
             alone = sum(fact.how != DEMANDED for fact in facts) == 1
             for fact in facts:
-                if not _is_of(fact, it) or not (alone or fact.how == DEMANDED):
+                if not _has_type_of(fact, it) or not (alone or fact.how == DEMANDED):
                     continue
                 said = [beyond(*check, it.value) for check in fact.checks]
                 for words in filter(None, said):
@@ -258,7 +258,7 @@ def _is_filled_in(value: Value | None) -> bool:
     return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
 
 
-def _declared(section: Section, release: str) -> Iterator[tuple[Setting, list[Declared]]]:
+def _declarations(section: Section, release: str) -> Iterator[tuple[Setting, list[Declared]]]:
     """Yield each parameter with its declarations in a release: by name, without any by pattern."""
     for it, known in section.known:
         found = [fact for fact in of_release(known, release) if fact.how != READ]
@@ -273,9 +273,9 @@ def _is_misspelt(value: Value | None, facts: Sequence[Declared]) -> bool:
     return isinstance(value, str) and nearest(value, words, MISTYPED) not in ("", value)
 
 
-def _is_of(fact: Declared, it: Setting) -> bool:
+def _has_type_of(fact: Declared, it: Setting) -> bool:
     """Return whether a value has the type of a declaration. An empty list is one of any."""
-    type_ = _expected(fact.type)
+    type_ = _compared_type(fact.type)
     if it.value == []:
         return type_.endswith("_array")
     return it.value is not None and type_ == _type_of(it.value)
@@ -287,18 +287,19 @@ def _type_of(value: Value) -> str:
     return _WORDS[type(value)]
 
 
-def _expected(type_: str) -> str:
+def _compared_type(type_: str) -> str:
     """Return the type that rclcpp compares; empty where any is taken."""
     array = _ARRAY.fullmatch(type_)
     word = f"{array[1]}_array" if array else type_.partition("_fixed")[0]
     return word if word.removesuffix("_array") in _WORDS.values() else ""
 
 
-def _article(type_: str) -> str:
+def _a_type(type_: str) -> str:
     return f"{'an' if type_.startswith('int') else 'a'} {type_}"
 
 
 def _other_type(type_: str, given: str, it: Setting) -> str:
+    """Return what to do about a value of another type."""
     if type_ == "double" and given == "int":
         return f"write {it.value}.0"
     if type_.startswith("double_array") and given == "int_array" and isinstance(it.value, list):

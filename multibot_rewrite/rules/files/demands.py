@@ -26,8 +26,9 @@ _OWN = lazy_compile(r"nav2_\w+_bt_node")
 
 
 class Demand(NamedTuple):
-    """One check of a given parameter with the words of its arguments; ``source`` says where it is, and
-    ``releases`` where not all have it."""
+    """One check of a given parameter with its arguments; ``source`` says where it is.
+
+    ``releases`` are those that have it, if not all do."""
 
     section: Section
     given: Setting
@@ -113,6 +114,7 @@ def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:
 
 
 def _with(it: Demand) -> str:
+    """Return why a parameter has no effect without another one; empty if it has."""
     other, *wanted = it.words
     if it.given.value in ("", []):
         return ""
@@ -127,6 +129,7 @@ def _with(it: Demand) -> str:
 
 
 def _without(it: Demand) -> str:
+    """Return why a parameter cannot be true with another one's value; empty if it can."""
     other, unwanted = it.words
     value = value_of(it.section, other)
     both = it.given.value is True and value is not None and word_of(value) == unwanted
@@ -134,6 +137,7 @@ def _without(it: Demand) -> str:
 
 
 def _unlike(it: Demand) -> str:
+    """Return the fault of a value that another parameter has as well; empty if they differ."""
     other, default = it.words
     value = value_of(it.section, other)
     same = it.given.value == (default if value is None else value)
@@ -141,6 +145,7 @@ def _unlike(it: Demand) -> str:
 
 
 def _among(it: Demand) -> str:
+    """Return the fault of a value that none of some parameters has; empty if one has it."""
     names, defaults = it.words[::2], it.words[1::2]
     pairs = zip(names, defaults, strict=True)
     found = {name: value_of(it.section, name) or default for name, default in pairs}
@@ -150,13 +155,14 @@ def _among(it: Demand) -> str:
     return f"is {it.given.value!r}, neither {known}"
 
 
-def _foreign(it: Demand) -> str:
+def _own_library_listed(it: Demand) -> str:
     """Return the fault of a list with a library that Nav2's nodes register anyway; empty if none."""
     own = [str(word) for word in _items(it) if _OWN.fullmatch(str(word))]
     return f"lists {own[0]}, which is loaded without it, so it is registered twice" if own else ""
 
 
 def _as_many(it: Demand) -> str:
+    """Return the fault of a list that has not as many items as another one; empty if it has."""
     other = value_of(it.section, it.words[0])
     here, there = len(_items(it)), len(other) if isinstance(other, list) else 0
     return (
@@ -173,22 +179,26 @@ def _instead(it: Demand) -> str:
 
 
 def _is_one(it: Demand) -> str:
+    """Return the fault of a name that is none of the known ones; empty if it is one."""
     word, *known = it.words
     return "" if word in known else f"is for {word!r}; there are {', '.join(known)}"
 
 
 def _together(it: Demand) -> str:
+    """Return the fault of a list with one word and without the other; empty if it has both."""
     word, other = it.words
     alone = word in _items(it) and other not in _items(it)
     return f"has {word!r} without {other!r}" if alone else ""
 
 
 def _or_true(it: Demand) -> str:
+    """Return the fault of parameters that are all false; empty if one is true."""
     none = it.given.value is False and all(value_of(it.section, at) is not True for at in it.words)
     return f"is false, and so are {' and '.join(it.words)}: nothing is sent" if none else ""
 
 
 def _alone(it: Demand) -> str:
+    """Return why a parameter cannot be true with another one; empty if that is not set."""
     there = it.section.at + it.words[0] in it.section.whole
     return f"cannot be true with {it.words[0]}" if there and it.given.value is True else ""
 
@@ -203,7 +213,7 @@ def _period(it: Demand) -> str:
 
 
 def _once(it: Demand) -> str:
-    """Return the message, once, at the later one."""
+    """Return the fault of a value that an earlier parameter of its kind has; empty if none has."""
     kind, _, rest = (it.section.at + it.given.name).partition(".")
     for name, other in it.section.whole.items():
         if name == f"{kind}.{rest}":
@@ -215,6 +225,7 @@ def _once(it: Demand) -> str:
 
 
 def _renamed(it: Demand) -> str:
+    """Return the fault of a list with the old name of something; empty without it."""
     old, new = it.words
     return f"lists {old}, which is called {new} since Humble" if old in _items(it) else ""
 
@@ -246,6 +257,6 @@ def _items(it: Demand) -> list[Any]:
 
 
 _OF_OTHERS = _with, _without, _unlike, _among, _as_many, _instead, _together, _or_true, _alone
-_OF_WORDS = _period, _foreign, _is_one, _once, _renamed, _bonded, _listed
+_OF_WORDS = _period, _own_library_listed, _is_one, _once, _renamed, _bonded, _listed
 _PAIRS = {it.__name__[1:]: it for it in (*_OF_OTHERS, *_OF_WORDS)}
 _ROUNDED = 1e-4

@@ -28,7 +28,7 @@ from multibot_rewrite.rules.files import (
 from multibot_rewrite.rules.system import clocks
 
 
-def _of_files(
+def _rule_of_files(
     asked: Rule, *finders: Callable[[NamedFile], Iterator[Finding]], **changed: Any
 ) -> Rule:
     """Return a rule of files that a rule of descriptions stands for: any of the finders reports it."""
@@ -42,27 +42,31 @@ def _of_files(
 
 _UNREADABLE = declared.wrong_types, rcl_rules.rejected_values, rcl_rules.outside_of_marks
 SHARED = (
-    _of_files(reading.leftover, ros_names.placeholders, ros_names.unfilled),
-    _of_files(description_names.invalid_ros_name, ros_names.invalid_names),
-    _of_files(description_names.leading_slash, ros_names.slashes),
-    _of_files(rewriting.unclaimed_mention, names.unknown_uses),
-    _of_files(
+    _rule_of_files(reading.leftover, ros_names.placeholders, ros_names.unfilled),
+    _rule_of_files(description_names.invalid_ros_name, ros_names.invalid_names),
+    _rule_of_files(description_names.leading_slash, ros_names.slashes),
+    _rule_of_files(rewriting.unclaimed_mention, names.unknown_uses),
+    _rule_of_files(
         values.misspelt,
         declared.unknown_parameters,
         rcl_rules.misspelt_marks,
         plugin_names.renamed_nodes,
     ),
-    _of_files(
+    _rule_of_files(
         values.not_read, declared.not_read, declared.below_unknown_names, declared.in_the_manager
     ),
-    _of_files(values.missing, plugin_names.without_plugin, plugin_names.missing_parameters),
-    _of_files(values.unreadable_value, *_UNREADABLE, level=WARNING),
-    _of_files(values.unknown_word, plugin_names.unknown_classes),
-    _of_files(clocks.clocks_mixed, rcl_rules.mixed_clocks, level=WARNING, formats=(PARAMS,)),
-    _of_files(declaration.ONE_DEVICE, same_for_all.one_device, formats=(PARAMS,)),
-    _of_files(declaration.NOT_EXPORTED, controllers.not_exported, formats=(PARAMS,), options={}),
-    _of_files(named_robots.prefix_only, same_for_all.prefix_only),
-    _of_files(values.out_of_range, declared.out_of_bounds, demands.above_others, level=WARNING),
+    _rule_of_files(values.missing, plugin_names.without_plugin, plugin_names.missing_parameters),
+    _rule_of_files(values.unreadable_value, *_UNREADABLE, level=WARNING),
+    _rule_of_files(values.unknown_word, plugin_names.unknown_classes),
+    _rule_of_files(clocks.clocks_mixed, rcl_rules.mixed_clocks, level=WARNING, formats=(PARAMS,)),
+    _rule_of_files(declaration.ONE_DEVICE, same_for_all.one_device, formats=(PARAMS,)),
+    _rule_of_files(
+        declaration.NOT_EXPORTED, controllers.not_exported, formats=(PARAMS,), options={}
+    ),
+    _rule_of_files(named_robots.prefix_only, same_for_all.prefix_only),
+    _rule_of_files(
+        values.out_of_range, declared.out_of_bounds, demands.above_others, level=WARNING
+    ),
 )
 # Up to a reason, which is behind a dash.
 _COMMENT = lazy_compile(r"(?:#|--)\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])")

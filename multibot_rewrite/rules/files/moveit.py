@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Limits and groups of MoveIt's files against the descriptions and the SRDF of their package;
-groups and controller managers that the robots of a fleet do not have.
+"""Limits and groups of MoveIt's files against the descriptions and the SRDF of their package.
+
+And groups and controller managers that the robots of a fleet do not have.
 
 Source: moveit2 2.12.4 robot_model_loader.cpp (a limit of the file takes the place of the URDF's),
-kinematics_plugin_loader.cpp and ompl_interface.cpp (both ask by the groups of the SRDF).
-"""
+kinematics_plugin_loader.cpp and ompl_interface.cpp (both ask by the groups of the SRDF)."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Finding]:
     robots: Robots | None = file.memo.get(Robots)
     subjects = robots.subjects if robots and file.kind == MOVEIT else ()
     for section in sections(file) if robots else ():
-        yield from _of_none(file, section, subjects) if robots and robots.is_whole else ()
+        yield from (_unknown_joints(file, section, subjects) if robots and robots.is_whole else ())
         for it in section.given:
             found = _LIMIT.fullmatch(it.name)
             if found is None:
@@ -59,14 +59,18 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Finding]:
             if what == "max_velocity" and (flag is None or flag.value is not True):
                 continue
             joints = (subject.robot.joint.get(name) for subject in subjects)
-            limits = [_beyond(joint, what, it.value) for joint in joints if joint is not None]
+            limits = [
+                _exceeded_limit(joint, what, it.value) for joint in joints if joint is not None
+            ]
             if limits and all(limit is not None for limit in limits):
                 message = f"{what} of {name} is {it.value:g}"
                 hint = "MoveIt plans beyond what the joint takes"
                 yield remark_at(it.node, f"{message}, but the URDF has {limits[0]:g}", hint)
 
 
-def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> Iterator[Finding]:
+def _unknown_joints(
+    file: NamedFile, section: Section, subjects: Sequence[Subject]
+) -> Iterator[Finding]:
     """Report joints that a package's only robot lacks, as does the SRDF in the file's folder."""
     srdfs = _srdfs(file.file)
     names = {_ROBOT.search(data) for data in srdfs}
@@ -88,7 +92,7 @@ def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> 
         yield remark_at(it.key, message, did_you_mean(joint, there) or "correct the name")
 
 
-def _beyond(joint: Joint, what: str, value: object) -> float | None:
+def _exceeded_limit(joint: Joint, what: str, value: object) -> float | None:
     """Return the joint's limit that a value exceeds; None if it exceeds none."""
     attribute, side = _OF_URDF[what]
     limit = joint.parts.get("limit")
@@ -107,14 +111,14 @@ def groups_not_in_srdf(file: NamedFile) -> Iterator[Finding]:
     # A build that has the SRDF knows its groups, and says it as of any name.
     told = file.is_certain and bool(file.declared.get("group"))
     asked = bool(sites) and not told and not is_for_ros_1(file.file)
-    groups = _groups(file.file) if asked else frozenset()
+    groups = _groups_in_srdfs(file.file) if asked else frozenset()
     for it in sites if groups else ():
         if it.text and it.text not in groups and it.text.isidentifier():
             message = f"no SRDF of its package has a group {it.text!r}"
             yield remark(it, message, did_you_mean(it.text, groups) or f"there is {min(groups)}")
 
 
-def _groups(file: str) -> frozenset[str]:
+def _groups_in_srdfs(file: str) -> frozenset[str]:
     found: set[str] = set()
     for data in _srdfs(file):
         names = {it[1].decode("utf-8", "replace") for it in _GROUP.finditer(data)}

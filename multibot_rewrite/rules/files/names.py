@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names in related files that their description does not have, whose use is not known, or that are
-in another file."""
+"""Names in related files that their description lacks, of unknown use, or in another file."""
 
 from __future__ import annotations
 
@@ -66,10 +65,10 @@ def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
 def _undeclared_names(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Finding]:
     joints = (it for it in file.names if it.kind == "joint")
     there = {it.together for it in joints if it.text in file.declared.get("joint", ())}
-    foreign = set(_foreign(file)[0])
+    foreign = set(_names_of_another_robot(file)[0])
     hinted: dict[str, str] = {}
     for site in (it for it in file.names if it.kind in kinds):
-        name = _missing(file, site)
+        name = _missing_name(file, site)
         if not name or (site.kind, site.text) in foreign:
             continue
         known = file.declared.get("link" if site.kind in _FRAMES else _kind_of(site), {})
@@ -94,13 +93,14 @@ def _is_sure(file: NamedFile, site: Site) -> bool:
 
 
 def _near_hint(file: NamedFile, site: Site, name: str, known: Iterable[str]) -> str:
+    """Return the question whether a known name is meant; empty without one."""
     if not file.is_certain:
         near = meant_name(name, known)
         return f"did you mean {near!r}?" if near else ""
     return did_you_mean(name, known, *(() if _is_sure(file, site) else (MISTYPED,)))
 
 
-def _missing(file: NamedFile, site: Site) -> str:
+def _missing_name(file: NamedFile, site: Site) -> str:
     """Return the name that the description should have and has not; empty for any other."""
     if " " in site.text or not is_plain(site.text) or site.own:
         return ""
@@ -133,7 +133,7 @@ def _missing(file: NamedFile, site: Site) -> str:
 @rule("MB875", "file-of-another-robot", ERROR, formats=(MOVEIT,), options={"build": True})
 def of_another_robot(file: NamedFile) -> Iterator[Finding]:
     """Report a file that names another robot's joints or links, once, at the first."""
-    missing, count, first = _foreign(file)
+    missing, count, first = _names_of_another_robot(file)
     if missing and first:
         few = ", ".join(text for _, text in missing[:2])
         message = f"{len(missing)} of the {count} names in this file are in no description: {few}"
@@ -141,7 +141,7 @@ def of_another_robot(file: NamedFile) -> Iterator[Finding]:
         yield remark(first, f"{message} and others", hint or "name the file of this robot")
 
 
-def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
+def _names_of_another_robot(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
     """Return the missing names, the number of all names and the first site, if most are missing."""
     if file.kind != MOVEIT or not file.is_certain:
         return [], 0, None
@@ -149,7 +149,7 @@ def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
     for it in file.names:
         if it.kind in (*_FRAMES, *_PARTS):
             closed.setdefault((it.kind, it.text), it)
-    missing = [key for key, it in closed.items() if _missing(file, it)]
+    missing = [key for key, it in closed.items() if _missing_name(file, it)]
     if len(missing) < _FEWEST or 2 * len(missing) <= len(closed):
         return [], 0, None
     return missing, len(closed), closed[missing[0]]
@@ -162,7 +162,7 @@ def unknown_uses(file: NamedFile) -> Iterator[Finding]:
         return
     level = "" if file.is_certain else NOTE
     known, renamed = _robots_names(file), _renamed(file)
-    said = [(site, _mention(file, site, known, renamed)) for site in file.others]
+    said = [(site, _mentioned(file, site, known, renamed)) for site in file.others]
     said = [(site, found) for site, found in said if found]
     misspelt = {it.line for it in unknown_parameters(file)} if said else set()
     for site, found in said:
@@ -182,19 +182,21 @@ def _guessed(file: NamedFile) -> Iterator[Finding]:
         doubt = in_doubt(file.context, section, names)
         left = [it for it in taken if it.kind in doubt]
         if guessed := [it for it in taken if not it.is_sure and it not in left]:
-            told = f"parameters that hold names are guessed: {_keys(guessed)}"
-            yield _unknown(guessed[0], section.path, told)
+            told = f"parameters that hold names are guessed: {_listed_keys(guessed)}"
+            yield _unknown_node(guessed[0], section.path, told)
         if left:
             other = doubt[left[0].kind]
             told = f"{other.value!r} in line {line_of(other)} may be a name, too: "
-            yield _unknown(left[0], section.path, f"{told}{_keys(left)} stay as they are")
+            yield _unknown_node(
+                left[0], section.path, f"{told}{_listed_keys(left)} stay as they are"
+            )
 
 
-def _keys(sites: Iterable[Site]) -> str:
+def _listed_keys(sites: Iterable[Site]) -> str:
     return ", ".join(dict.fromkeys(it.key for it in sites))
 
 
-def _unknown(site: Site, node: str, told: str) -> Finding:
+def _unknown_node(site: Site, node: str, told: str) -> Finding:
     hint = "describe the node in a file under nodes:"
     return remark(site, f"node {node} is not known; {told}", hint)
 
@@ -207,7 +209,9 @@ def _renamed(file: NamedFile) -> frozenset[str]:
     return frozenset(kept) if file.kind in _LOOSE else frozenset()
 
 
-def _mention(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozenset[str]) -> str:
+def _mentioned(
+    file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozenset[str]
+) -> str:
     """Return how a text names something of the robot, for a message; empty if it does not."""
     text = site.text
     apart = file.is_certain and file.context.names.naming.layout.tf_per_robot
@@ -254,8 +258,7 @@ def _is_claimed(file: NamedFile, site: Site) -> bool:
 
 
 def _is_interface(file: NamedFile, value: str) -> bool:
-    """Return whether it is an interface like ``elbow/position``. ``imu/data`` is more likely a
-    topic than an interface of a sensor, ``imu/orientation.x`` can be no topic."""
+    """Return whether it is an interface like ``elbow/position``; ``imu/data`` is rather a topic."""
     *chain, interface = value.split("/")
     kinds = ("joint", "gpio", "sensor") if "." in interface else ("joint", "gpio")
     names = file.context.names

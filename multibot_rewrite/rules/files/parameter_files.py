@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters that nodes declare: by the sources of their packages where those are there, which
+"""The parameters that nodes declare, and the checks of a value by their declarations.
+
+They are known by the sources of their packages where those are there, which
 generate_parameter_library reads as YAML files, else by installed NoDL documents and by what is
-known; and the checks of generate_parameter_library on a value, and those of ``demanded.schema``.
+known. The checks are those of generate_parameter_library and of ``demanded.schema``.
 
 Source: https://github.com/PickNikRobotics/generate_parameter_library (README, "YAML Syntax").
 
@@ -64,6 +66,7 @@ def file_parameters(text: str) -> tuple[FileParameter, ...]:
 
 
 def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[FileParameter]:
+    """Yield the parameters in a part of such a file, at a path below its top key."""
     keys = {key.value: value for key, value in pairs(node)}
     type_ = keys.get("type")
     if isinstance(type_, yaml.ScalarNode) and type_.value.partition("_")[0] in _TYPES:
@@ -74,7 +77,7 @@ def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[
             ".".join(path),
             str(given["type"]),
             text_of(given.get("default_value")),
-            _bounds(given.get("validation")),
+            _checks_as_text(given.get("validation")),
             "read_only" if given.get("read_only") is True else "",
             node.start_mark.line + 1,
         )
@@ -86,7 +89,7 @@ def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[
         yield from _parameters(owner, below, (*path, step))
 
 
-def _bounds(validation: object) -> str:
+def _checks_as_text(validation: object) -> str:
     """Return ``gt_eq(0.0) size_lt([5])``: each check with its arguments."""
     if not isinstance(validation, dict):
         return ""
@@ -135,8 +138,7 @@ def facts_of_node(
 
 @outside
 def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
-    """Return names and types of the parameters in the installed NoDL document of a node; none
-    without one, or if it cannot be read, which ``multibot plan`` reports."""
+    """Return names and types of the parameters in a node's installed NoDL document; none without."""
     try:
         installed = find_interfaces(())
         file = file_of(installed, Identity(package, node))
@@ -213,10 +215,11 @@ def beyond(check: str, arguments: str, value: Any) -> str:
     if name in _SIZES and isinstance(value, str | list) and is_number(first):
         holds, words = _SIZES[name]
         return "" if holds(len(value), first) else f"{words} {first}"
-    return _SHAPES[name](first, value) if name in _SHAPES else _of_many(name, given, value)
+    return _SHAPES[name](first, value) if name in _SHAPES else _beyond_several(name, given, value)
 
 
-def _of_many(name: str, given: list[Any], value: Any) -> str:
+def _beyond_several(name: str, given: list[Any], value: Any) -> str:
+    """Return what a value has to be by a check with several arguments and is not; empty if it is."""
     first: Any = given[0] if given else None
     if name in ("lower_bounds", "upper_bounds") and isinstance(value, list) and is_number(first):
         holds, words = _NUMBERS[name]
@@ -228,10 +231,11 @@ def _of_many(name: str, given: list[Any], value: Any) -> str:
         return "not empty"
     if name == "not_empty" and isinstance(value, list) and "" in value:
         return "without an empty name"  # it is taken, and no interface has that name
-    return _of_list(name, first, value)
+    return _beyond_choices(name, first, value)
 
 
-def _of_list(name: str, choices: Any, value: Any) -> str:
+def _beyond_choices(name: str, choices: Any, value: Any) -> str:
+    """Return what a value has to be by a check with a list of texts and is not; empty if it is."""
     if not isinstance(choices, list) or not all(isinstance(it, str) for it in choices):
         return ""
     words = ", ".join(choices)
@@ -243,11 +247,13 @@ def _of_list(name: str, choices: Any, value: Any) -> str:
 
 
 def _limits(_: Any, value: Any) -> str:
+    """Return how many values a list has to have: of three axes, or six; empty if it has them."""
     known = not isinstance(value, list) or len(value) in (3, 6)
     return "" if known else "with three values (x, y, theta), or six from Lyrical on"
 
 
 def _square(side: Any, value: Any) -> str:
+    """Return how many values a square matrix has to have; empty if it has them."""
     known = not isinstance(value, list) or len(value) in (side, side * side)
     return "" if known else f"with {side * side} values, or {side} on its diagonal"
 
@@ -282,16 +288,19 @@ def polygon_of(text: str) -> list[tuple[float, float]] | None:
 
 
 def _unique(_: Any, value: Any) -> str:
+    """Return that no value may be in a list twice; empty if none is."""
     twice = isinstance(value, list) and len(set(value)) < len(value)
     return "without one twice" if twice else ""
 
 
 def _some(_: Any, value: Any) -> str:
+    """Return that one value of a list has to be true; empty if one is."""
     none = isinstance(value, list) and True not in value
     return "true in one place or more" if none else ""
 
 
 def _stem(endings: Any, value: Any) -> str:
+    """Return which endings a text must not have; empty if it has none of them."""
     ended = isinstance(value, str) and value.endswith(tuple(endings))
     return f"without {' or '.join(endings)}, which its reader adds" if ended else ""
 

@@ -65,16 +65,16 @@ def unknown_classes(file: NamedFile) -> Iterator[Finding]:
     for it, given, name in _named_classes(file):
         if name not in told:
             where = f"{it.section.title}: {given.name}"
-            yield from _of_class(given.node, where, name, it.words[0], release)
+            yield from _class_findings(given.node, where, name, it.words[0], release)
     for it in demands(file, "critics"):
-        yield from _critics(it)
+        yield from _unknown_critics(it)
     for section in sections(file):
         own = section.whole.get(TYPE) if section.node is None and not section.at else None
         # A controller may say its class in its own section; whose class is known is a known node.
         class_ = str(own.value) if own else ""
         if own and _package(class_) in _controller_packages():
             where = f"{section.title}: {TYPE}"
-            yield from _of_class(own.node, where, class_, _CONTROLLER, release)
+            yield from _class_findings(own.node, where, class_, _CONTROLLER, release)
 
 
 def classes_of_other_releases(file: NamedFile) -> list[str]:
@@ -109,7 +109,10 @@ def words_of(given: Setting) -> list[str]:
     return [str(word) for word in value] if isinstance(value, list) else str(value or "").split()
 
 
-def _of_class(node: yaml.Node, where: str, name: str, base: str, release: str) -> Iterator[Finding]:
+def _class_findings(
+    node: yaml.Node, where: str, name: str, base: str, release: str
+) -> Iterator[Finding]:
+    """Yield the finding about a class that no package of the release registers."""
     known = plugin_bases()[base]
     if name in known.classes and has_release(known.classes[name], release):
         return
@@ -119,8 +122,7 @@ def _of_class(node: yaml.Node, where: str, name: str, base: str, release: str) -
 
 
 def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, str, str]:
-    """Return what is wrong with a class that the release lacks, what to do, and the level; all
-    empty where an unknown package may have it."""
+    """Return fault, hint and level of a class that the release lacks; empty where it may exist."""
     there = [it for it, words in known.classes.items() if has_release(words, release)]
     if alike := next((it for it in there if canonical(it) == canonical(name)), ""):
         return f"which is written differently in {release}", f"write {alike}", WARNING
@@ -150,15 +152,14 @@ def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, 
 
 
 def _near_hint(name: str, there: Sequence[str]) -> str:
+    """Return the question whether a class with nearly this name is meant, or where to look."""
     by_name = {canonical(it): it for it in there}
     near = by_name.get(nearest(canonical(name), by_name))
     return f"did you mean {near}?" if near else "see the plugins of its package"
 
 
-def _critics(it: Demand) -> Iterator[Finding]:
-    """Report critics, which are classes of a scope: DWB adds the word Critic, and may look in
-    others. Another package may register more of them in that scope (pluginlib looks a name up in
-    all)."""
+def _unknown_critics(it: Demand) -> Iterator[Finding]:
+    """Report critics that their scope lacks; DWB adds the word Critic."""
     base = it.words[0]
     scope, known = _CRITIC_SCOPES[base], plugin_bases()[base].classes
     names = {name.rpartition("::")[2]: name for name in known}
@@ -207,6 +208,7 @@ def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:
 
 
 def _without_type(file: NamedFile) -> Iterator[Finding]:
+    """Report controllers that a manager's section names without a type."""
     raw = [RawSection(*it[:3]) for it, _ in file.pages]
     types = controller_types(raw)
     own = {fact.path.partition(".")[0] for fact in declared_by(MANAGER)}
@@ -249,7 +251,7 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
     for section in sections(file):
         facts = of_release(section.facts, file.context.distro)
         needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
-        found = [it for fact, words in needed for it in _missing(file, section, fact, words)]
+        found = [it for fact, words in needed for it in _not_set(file, section, fact, words)]
         # What a controller has under another name is misspelt, or it is of another class that is called
         # the same; a section with nothing of it adds to one of another file.
         unknown = [it for it, known in section.known if not known and it.name != TYPE]
@@ -289,7 +291,8 @@ def _none_of(facts: Iterable[Declared], there: Collection[str]) -> Iterator[tupl
                 yield said, f"add one to its parameter file; see {fact.source}", *names
 
 
-def _missing(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
+def _not_set(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
+    """Yield a finding for each block of a section that lacks a required parameter."""
     listed = value_of(section, words) if words else None
     for block, first in _blocks(section, fact.path):
         _, _, word = block.rpartition(".")

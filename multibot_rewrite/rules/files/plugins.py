@@ -43,10 +43,9 @@ Values = Mapping[str, Value | None]
 
 
 def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Declared, ...]]]:
-    """Return by plugin name its class and the parameters that the class declares. They are empty
-    for a class that is unknown, or that loads an unknown one."""
+    """Return by plugin name its class and that class's parameters; empty for an unknown class."""
     found: dict[str, tuple[str, tuple[Declared, ...]]] = {}
-    for name, class_ in (*_listed(values), *_classes(values), *_filters(values)):
+    for name, class_ in (*_listed(values), *_named_classes(values), *_chain_filters(values)):
         facts = declared_by(class_)
         if class_ == SHIM:
             facts = _with_primary(facts, values, name)
@@ -58,10 +57,10 @@ def _listed(values: Values) -> Iterator[tuple[str, str]]:
     """Yield the polygons and sources of a collision monitor, recognized by having both lists."""
     if all(it in values for it in LISTED):
         for path, class_ in LISTED.items():
-            yield from ((it, class_) for it in _list(values, path))
+            yield from ((it, class_) for it in _words_at(values, path))
 
 
-def _classes(values: Values) -> Iterator[tuple[str, str]]:
+def _named_classes(values: Values) -> Iterator[tuple[str, str]]:
     for path, value in values.items():
         name = path.removesuffix(_PLUGIN)
         if name == path or not isinstance(value, str):
@@ -70,12 +69,12 @@ def _classes(values: Values) -> Iterator[tuple[str, str]]:
         yield name, class_
         own = class_
         if class_ == SHIM and isinstance(values.get(name + _PRIMARY), str):
-            own = _text(values, name + _PRIMARY)
-        for critic in _list(values, name + _CRITICS):
+            own = _class_at(values, name + _PRIMARY)
+        for critic in _words_at(values, name + _CRITICS):
             yield f"{name}.{critic}", _critic(own, critic, name, values)
 
 
-def _filters(values: Values) -> Iterator[tuple[str, str]]:
+def _chain_filters(values: Values) -> Iterator[tuple[str, str]]:
     """Yield the parameters of each filter of a chain, whose class is in ``filterN.type``."""
     for path, value in values.items():
         if isinstance(value, str) and (found := FILTER.fullmatch(path)) and found["word"] == "type":
@@ -84,7 +83,7 @@ def _filters(values: Values) -> Iterator[tuple[str, str]]:
 
 def _with_primary(facts: tuple[Declared, ...], values: Values, name: str) -> tuple[Declared, ...]:
     """Return the parameters of a controller and of the one that it wraps under the same name."""
-    class_ = _text(values, name + _PRIMARY)
+    class_ = _class_at(values, name + _PRIMARY)
     if not class_:  # it has a name of its own, or the file does not say it
         return facts if name + _PRIMARY + _PLUGIN in values else ()
     inner = declared_by(class_)
@@ -92,20 +91,21 @@ def _with_primary(facts: tuple[Declared, ...], values: Values, name: str) -> tup
 
 
 def _critic(controller: str, critic: str, name: str, values: Values) -> str:
+    """Return the class of a controller's critic; empty for a controller that is not known."""
     if controller == MPPI:
         return f"mppi::critics::{critic}"
     if controller != DWB or name + _NAMESPACES in values:
         return ""
-    class_ = _text(values, f"{name}.{critic}.class") or critic
+    class_ = _class_at(values, f"{name}.{critic}.class") or critic
     class_ = class_ if "::" in class_ else f"dwb_critics::{class_}"
     return class_ if is_known(class_) else f"{class_}Critic"
 
 
-def _text(values: Values, path: str) -> str:
+def _class_at(values: Values, path: str) -> str:
     value = values.get(path)
     return value.replace("/", "::") if isinstance(value, str) else ""
 
 
-def _list(values: Values, path: str) -> list[str]:
+def _words_at(values: Values, path: str) -> list[str]:
     value = values.get(path)
     return [str(it) for it in value] if isinstance(value, list) else []

@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What rcl rejects in any parameter file, whatever node it is for, and what makes it skip a
-section; keys that are repeated, overridden or without a value, and words of a list without
-parameters.
+"""What rcl rejects or skips in any parameter file, whatever node it is for.
 
+Also keys that are repeated, overridden or without a value, and words of a list without parameters.
 Nodes read ``NAME.type``, ``NAME.topic`` or ``NAME.plugin`` for each NAME of a list: sources,
 layers, plugins, filters, docks. What is not listed is not read.
 
 Source: rcl_yaml_param_parser parse.c (``parse_value``: a sequence is of one type and of single
 values; ``PARAMS_KEY`` is ``ros__parameters``; what is above it is a name; ``parse_file_events``:
-"Cannot have a value before ros__parameters").
-"""
+"Cannot have a value before ros__parameters")."""
 
 from __future__ import annotations
 
@@ -69,21 +67,21 @@ def rejected_values(file: NamedFile) -> Iterator[Finding]:
 def outside_of_marks(file: NamedFile) -> Iterator[Finding]:
     """Report values that are below no ``ros__parameters``: the first one of each top key."""
     for key, below in pairs(file.document.root if file.document else None):
-        value = None if file.kind != PARAMS else next(_outside(key, below), None)
+        value = None if file.kind != PARAMS else next(_keys_outside(key, below), None)
         if value:
             message = f"rcl rejects the file: {key.value} has values that are below no {PARAMETERS}"
             hint = f"write {PARAMETERS}: above them, or take them out of the file"
             yield remark_at(value, message, hint, ERROR)
 
 
-def _outside(key: yaml.ScalarNode, node: yaml.Node) -> Iterator[yaml.ScalarNode]:
+def _keys_outside(key: yaml.ScalarNode, node: yaml.Node) -> Iterator[yaml.ScalarNode]:
     """Yield the keys of values outside of ``ros__parameters``; a misspelt mark has its own finding."""
     if key.value == PARAMETERS or _is_nearly_mark(key):
         return
     if not isinstance(node, yaml.MappingNode):
         yield key
     for inner, below in pairs(node):
-        yield from _outside(inner, below)
+        yield from _keys_outside(inner, below)
 
 
 def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
@@ -103,12 +101,12 @@ def _is_read(node: yaml.Node) -> bool:
 def misspelt_marks(file: NamedFile) -> Iterator[Finding]:
     """Report keys that are nearly ``ros__parameters``: no node reads what is below them."""
     root = file.document.root if file.document else None
-    for key in _keys(root, _DEEP):
+    for key in _keys_down_to(root, _DEEP):
         if key.value != PARAMETERS and _is_nearly_mark(key):
             message = f"{key.value!r} is no {PARAMETERS}: no node gets what is below it"
             yield remark_at(key, message, f"write {PARAMETERS}, with two underscores", ERROR)
     for section, _ in file.pages:
-        for key in _keys(section.body, _DEEP):
+        for key in _keys_down_to(section.body, _DEEP):
             if key.value == PARAMETERS:
                 message = f"a section below the {PARAMETERS} of {section.path}: no node reads it"
                 yield remark_at(key, message, "move it out, to where that section begins", WARNING)
@@ -119,11 +117,12 @@ def _is_nearly_mark(key: yaml.ScalarNode) -> bool:
     return bool(_NEARLY.fullmatch(word) or slip_of(word, (PARAMETERS,)))
 
 
-def _keys(node: yaml.Node | None, deep: int) -> Iterator[yaml.ScalarNode]:
+def _keys_down_to(node: yaml.Node | None, deep: int) -> Iterator[yaml.ScalarNode]:
+    """Yield the keys below a node, ``deep`` levels down, not those of parameters."""
     for key, value in pairs(node):
         yield key
         if deep and key.value != PARAMETERS:
-            yield from _keys(value, deep - 1)
+            yield from _keys_down_to(value, deep - 1)
 
 
 def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
@@ -202,7 +201,7 @@ _DIGITS = str.maketrans("", "", "0123456789")
 
 @rule("MB877", "listed-name-without-parameters", WARNING, formats=(PARAMS,))
 def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
-    """Report each list of each node."""
+    """Report each list of a node with names that have no parameters."""
     for node in given_in(file):
         # Below each parameter the names with parameters of their own, each at its first place.
         bodies: dict[str, dict[str, Place]] = {}

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that ROS refuses, placeholders in names, frames that tf2 refuses or takes for others; and
-words for robots in names and values: a build puts them in itself, so that a source has none.
-"""
+"""Names that ROS or tf2 refuses, placeholders, and robots' names, which a build puts in itself."""
 
 from __future__ import annotations
 
@@ -33,7 +31,7 @@ _FIXED = "<Fixed Frame>"
 
 
 def invalid_names(file: NamedFile) -> Iterator[Finding]:
-    """Report names in the graph, and those of sections."""
+    """Report names in the graph, and those of sections, that ROS refuses."""
     for site in file.names:
         fault = _section_fault(site) if site.kind == SECTION else ""
         if site.kind in GRAPH and site.text and is_filled(site.text):
@@ -58,7 +56,7 @@ def _section_fault(site: Site) -> str:
 
 @rule("MB876", "name-in-text-block", WARNING, formats=(PARAMS, MOVEIT))
 def text_block(file: NamedFile) -> Iterator[Finding]:
-    """Report each name in a block of text."""
+    """Report each name that is written as a block of text."""
     for site in file.names:
         if site.slot.is_block and site.kind in (*GRAPH, *SPELLERS):
             name = site.text.strip()
@@ -92,7 +90,7 @@ def unfilled(file: NamedFile) -> Iterator[Finding]:
 
 def slashes(file: NamedFile) -> Iterator[Finding]:
     """Report values with a slash that are known to be frames."""
-    for site in _frames(file):
+    for site in _frame_names(file):
         if site.text.startswith("/") and is_plain(site.text) and not _is_spaced(site.text):
             name, level = f"frame {site.text!r}", NOTE if site.bare else ""
             message = f"{name} starts with a slash, which tf2 refuses"
@@ -104,7 +102,7 @@ def slashes(file: NamedFile) -> Iterator[Finding]:
 @rule("MB865", "frame-with-white-space", WARNING, formats=EVERY)
 def frame_with_white_space(file: NamedFile) -> Iterator[Finding]:
     """Report values with white space that are known to be frames."""
-    for site in _frames(file):
+    for site in _frame_names(file):
         if _is_spaced(site.text) and is_filled(site.text):
             message = (
                 f"frame {site.text!r} has white space in it: it is another one, and not rewritten"
@@ -112,7 +110,7 @@ def frame_with_white_space(file: NamedFile) -> Iterator[Finding]:
             yield remark(site, message, f"write {'_'.join(site.text.split())}")
 
 
-def _frames(file: NamedFile) -> Iterator[Site]:
+def _frame_names(file: NamedFile) -> Iterator[Site]:
     # A block of text has a line break at its end, which is told where it is rewritten.
     free = (it for it in file.names if not it.in_key and not it.text.endswith("\n"))
     yield from (it for it in free if it.kind == "frame" and it.is_sure and it.text)
@@ -137,7 +135,7 @@ def robot_in_name(file: NamedFile) -> Iterator[Finding]:
     if not file.robots:
         return
     known = declared_names(file.declared)
-    named = ((it, _in_site(file, it, known)) for it in file.names)
+    named = ((it, _robot_at(file, it, known)) for it in file.names)
     others = ((it, in_value(it.text, file.robots - file.own, known)) for it in file.others)
     found = [(it, *said) for it, said in (*named, *others) if said]
     for site, name, robot in sorted(found, key=lambda it: (it[0].line, it[0].column))[:1]:
@@ -162,7 +160,7 @@ def declared_names(declared: Mapping[str, Collection[str]]) -> frozenset[str]:
     return frozenset((*USUAL_FRAMES, *(it for names in declared.values() for it in names)))
 
 
-def _in_site(file: NamedFile, site: Site, declared: frozenset[str]) -> tuple[str, str] | None:
+def _robot_at(file: NamedFile, site: Site, declared: frozenset[str]) -> tuple[str, str] | None:
     """Return the name at a site and the robot in it; None for a name without a robot."""
     # In a topic of gz the model is the robot, whatever it is called; a planning group has any name; a
     # prefix is told itself.
@@ -174,9 +172,11 @@ def _in_site(file: NamedFile, site: Site, declared: frozenset[str]) -> tuple[str
         return None
     if file.kind == RVIZ and name.count("/") < 3:
         return None
-    robot = next((it for it in sorted(file.robots) if f"/{it}/" in name and _tells(it, name)), "")
+    robot = next(
+        (it for it in sorted(file.robots) if f"/{it}/" in name and _means_robot(it, name)), ""
+    )
     if not robot and site.kind not in GRAPH:
-        robot = _glued(site.text, file.robots, declared)
+        robot = _robot_in_declared(site.text, file.robots, declared)
     return (site.text, robot) if robot else None
 
 
@@ -185,16 +185,16 @@ def in_value(text: str, words: Collection[str], declared: frozenset[str]) -> tup
     if not any(it in text for it in words) or _NOT_A_NAME.search(text):
         return None
     for token in _TOKEN.findall(text):
-        robot = _at_an_end(token, words) or _glued(token, words, declared)
+        robot = _robot_at_an_end(token, words) or _robot_in_declared(token, words, declared)
         if robot:
             return token, robot
     return None
 
 
-def _at_an_end(token: str, words: Iterable[str]) -> str:
+def _robot_at_an_end(token: str, words: Iterable[str]) -> str:
     """Return the robot that a name begins or ends with, or that is its model; empty for none."""
     name = token.strip("/")
-    told = (it for it in sorted(words) if _tells(it, name))
+    told = (it for it in sorted(words) if _means_robot(it, name))
     ends = ((f"{it}/", f"/{it}", f"model/{it}/") for it in told)
     for start, end, model in ends:
         if name.startswith(start) or name.endswith(end) or model in f"{name}/":
@@ -202,21 +202,22 @@ def _at_an_end(token: str, words: Iterable[str]) -> str:
     return ""
 
 
-def _tells(word: str, name: str) -> bool:
-    """Return whether a robot's name as a segment of a name means the robot. One that also names a
-    part does if it occurs twice: camera/image is a topic of every camera."""
+def _means_robot(word: str, name: str) -> bool:
+    """Return whether a robot's name as a segment means the robot: ``camera`` only where it is twice."""
     return word not in PARTS or f"/{word}/{word}/" in f"/{name.strip('/')}/"
 
 
-def _glued(token: str, words: Iterable[str], declared: frozenset[str]) -> str:
+def _robot_in_declared(token: str, words: Iterable[str], declared: frozenset[str]) -> str:
     """Return the robot's name before or after a declared name, as in robot1_odom; empty for none."""
     name = token.strip("/")
     if name in declared:
         return ""
-    return next((it for it in sorted(words) if not declared.isdisjoint(_without(name, it))), "")
+    return next(
+        (it for it in sorted(words) if not declared.isdisjoint(_without_affixes(name, it))), ""
+    )
 
 
-def _without(name: str, word: str) -> Iterator[str]:
+def _without_affixes(name: str, word: str) -> Iterator[str]:
     """Yield a name without any robot's name in front, and without any behind."""
     front = back = name
     while front.startswith(word):
@@ -228,6 +229,6 @@ def _without(name: str, word: str) -> Iterator[str]:
 
 
 def of_one_robot(name: str, robot: str) -> tuple[str, str]:
-    """Return message and hint; raises nothing."""
+    """Return message and hint about a name with a robot's name in it."""
     message = f"{name} includes the robot name {robot}, so the file is for that robot only"
     return message, "remove the robot name from every name; the build adds it for each robot"

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a file, and the parameter files of the same robot, set for each node and plugin, and what
-declares it: of a parameter file, and of a file of MoveIt as the parameters that it becomes."""
+"""What the parameter files of a robot, MoveIt's too, set for nodes and plugins; what declares it."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -56,7 +55,7 @@ def beside(file: NamedFile) -> Beside:
     """Return the robot's parameter files; for a file alone, those in its folder."""
     if Beside not in file.memo:
         release = file.context.distro
-        file.memo[Beside] = Beside(_given_by(file, _in_folder(file)), load_nodes(release))
+        file.memo[Beside] = Beside(_given_by(file, _files_in_folder(file)), load_nodes(release))
     found: Beside = file.memo[Beside]
     return found
 
@@ -99,7 +98,7 @@ def _given_by(file: NamedFile, documents: Iterable[YamlText]) -> tuple[Run, ...]
         return ()
 
 
-def _in_folder(file: NamedFile) -> Iterator[YamlText]:
+def _files_in_folder(file: NamedFile) -> Iterator[YamlText]:
     own = os.path.abspath(file.file)
     folder = os.path.dirname(own)
     for path in (os.path.join(folder, it) for it in sorted(entries(folder))):
@@ -123,6 +122,7 @@ class Setting(NamedTuple):
 
 class Section(NamedTuple):
     """The parameters of one node or plugin, each with what declares it, and all that is declared.
+
     ``whole`` is all that the node is given, where names of a plugin begin with ``at``."""
 
     title: str
@@ -137,7 +137,7 @@ class Section(NamedTuple):
 def sections(file: NamedFile) -> tuple[Section, ...]:
     """Return the sections of a parameter file, or the parameters of a file of MoveIt."""
     if sections not in file.memo:
-        read = _of_moveit if file.kind == MOVEIT else _sections
+        read = _moveit_section if file.kind == MOVEIT else _sections
         file.memo[sections] = tuple(read(file))
     found: tuple[Section, ...] = file.memo[sections]
     return found
@@ -151,20 +151,20 @@ def _sections(file: NamedFile) -> Iterator[Section]:
             return
         given = _settings_below(file.document, it.body)
         if name in ANY or PLACEHOLDER.search(it.path):
-            yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
+            yield _section(it.path, None, given, declared_by(EVERY_NODE), _settings_by_name(given))
             continue
         type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
         node = it.node
-        if node is not None and not _is_surely(node, name, type_, given):
+        if node is not None and not _is_this_controller(node, name, type_, given):
             node = None
         facts = facts_of_node(node, type_, file.file, file.roots)
-        whole = _by_name(given)
-        below, rest = _of_plugins(it.path, given, whole)
+        whole = _settings_by_name(given)
+        below, rest = _plugin_sections(it.path, given, whole)
         yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), whole)
         yield from below
 
 
-def _of_moveit(file: NamedFile) -> Iterator[Section]:
+def _moveit_section(file: NamedFile) -> Iterator[Section]:
     kind = find_kind(file.document) if file.document else None
     if file.document is None or kind is None or is_for_ros_1(file.file):
         return
@@ -172,12 +172,12 @@ def _of_moveit(file: NamedFile) -> Iterator[Section]:
     above = parameter_above(kind, file.document)
     root = file.document.root
     read = _settings_below(file.document, root, above) if root is not None else ()
-    given = tuple(it._replace(value=_tagged(it.node, it.value)) for it in read)
+    given = tuple(it._replace(value=_moveit_value(it.node, it.value)) for it in read)
     facts = facts_of_node(node, "", file.file, file.roots)
-    yield _section(node.name, node, given, facts, _by_name(given))
+    yield _section(node.name, node, given, facts, _settings_by_name(given))
 
 
-def _by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
+def _settings_by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
     return {it.name: it for it in given}
 
 
@@ -191,7 +191,9 @@ def _section(
 ) -> Section:
     exact = lists_by_key((it.path, it) for it in facts if "<" not in it.path)
     wild = [(it.path.rpartition(".")[2], it) for it in facts if "<" in it.path]
-    known = tuple((it, (*exact.get(it.name, ()), *_matching(wild, it.name))) for it in given)
+    known = tuple(
+        (it, (*exact.get(it.name, ()), *_wild_declarations(wild, it.name))) for it in given
+    )
     # Without what is not read with the value of another parameter.
     asked = tuple(
         (it, tuple(fact for fact in its if _is_read(fact, it.name, whole, at))) for it, its in known
@@ -200,6 +202,7 @@ def _section(
 
 
 def _is_read(fact: Declared, name: str, whole: Mapping[str, Setting], at: str) -> bool:
+    """Return whether a declared parameter is read with the values of the others."""
     for check, text in fact.checks if ASKED in fact.bounds else ():
         if check == ASKED:
             other, value = filled(text, fact.path, name)
@@ -217,17 +220,16 @@ def filled(text: str, path: str, name: str) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Declared]:
+def _wild_declarations(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Declared]:
     """Return those that have the name, each with the last word of its path."""
     last = name.rpartition(".")[2]
     return (it for end, it in wild if (end == last or "<" in end) and it.has_name(name))
 
 
-def _of_plugins(
+def _plugin_sections(
     title: str, given: Sequence[Setting], whole: Mapping[str, Setting]
 ) -> tuple[list[Section], tuple[Setting, ...]]:
-    """Return a section for each known plugin, with its names below it, and the settings of no
-    plugin. What an unknown plugin declares is unknown."""
+    """Return a section for each known plugin, its names below it, and the settings of no plugin."""
     plugins = plugins_in({it.name: it.value for it in given})
     of: dict[str, list[Setting]] = {}
     for it in given:
@@ -242,7 +244,9 @@ def _of_plugins(
     return found, tuple(rest)
 
 
-def _is_surely(node: NodeParameters, name: str, type_: str, given: Sequence[Setting]) -> bool:
+def _is_this_controller(
+    node: NodeParameters, name: str, type_: str, given: Sequence[Setting]
+) -> bool:
     """Return whether it is this controller, not another one that often has the same name."""
     if not node.types or type_ in node.types:
         return True
@@ -253,15 +257,17 @@ def _is_surely(node: NodeParameters, name: str, type_: str, given: Sequence[Sett
 
 def _settings_below(document: YamlText, body: yaml.Node, above: str = "") -> tuple[Setting, ...]:
     every = settings(body, above)
-    return tuple(Setting(name, key, node, _value(document, node)) for name, key, node in every)
+    return tuple(
+        Setting(name, key, node, _known_value(document, node)) for name, key, node in every
+    )
 
 
-def _tagged(node: yaml.Node, value: Value | None) -> Value | None:
-    """Return a value of MoveIt's files as launch files read them, which is by PyYAML with two more tags
-    (launch_param_builder utils.py, load_yaml; moveit2 moveit_configs_utils). An angle that is an
-    expression, which xacro alone evaluates, is not known."""
+def _moveit_value(node: yaml.Node, value: Value | None) -> Value | None:
+    """Return a value of MoveIt's files as launch files read it; None for an expression of an angle.
+
+    Source: launch_param_builder utils.py, load_yaml; moveit2 moveit_configs_utils."""
     if isinstance(node, yaml.SequenceNode) and isinstance(value, list):
-        each = [_tagged(it, one) for it, one in zip(node.value, value, strict=True)]
+        each = [_moveit_value(it, one) for it, one in zip(node.value, value, strict=True)]
         return None if None in each else cast("Value", each)
     read = float if node.tag == _FLOAT and isinstance(value, int) else ANGLES.get(node.tag)
     try:
@@ -270,7 +276,7 @@ def _tagged(node: yaml.Node, value: Value | None) -> Value | None:
         return None
 
 
-def _value(document: YamlText, node: yaml.Node) -> Value | None:
+def _known_value(document: YamlText, node: yaml.Node) -> Value | None:
     try:
         value = value_of(document, node)
     except InputError:

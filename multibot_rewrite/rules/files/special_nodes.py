@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that one node alone has in this form: the chains of filters of laser_filters, the
-commands of joy_teleop.
+"""Parameters of one node alone: the filter chains of laser_filters, the commands of joy_teleop.
 
 Sources: ros/filters 2.1.1 filter_chain.hpp (``load_chain_config``: filter1, filter2 ... up to the
 first number without name and type; one without the other, or a name twice, and the chain is not
 configured); ros-teleop/teleop_tools 99d16d74c joy_teleop/joy_teleop/joy_teleop.py
 (JoyTeleopCommand, JoyTeleopTopicCommand, ``get_interface_type``, ``get_parent_member``,
-JoyTeleop.__init__).
-"""
+JoyTeleop.__init__)."""
 
 from __future__ import annotations
 
@@ -39,7 +37,7 @@ _Values = Mapping[str, Setting]
 
 @rule("MB897", "joystick-command", ERROR, formats=(PARAMS,))
 def broken_commands(file: NamedFile) -> Iterator[Finding]:
-    """Report each command, at its first parameter."""
+    """Report each faulty command of joy_teleop, at its first parameter."""
     for section in sections(file):
         if section.node is None or section.node.name != "joy_teleop":
             continue
@@ -51,12 +49,12 @@ def broken_commands(file: NamedFile) -> Iterator[Finding]:
             if values.keys().isdisjoint(_WORDS):
                 continue  # another node may have that name: teleop_twist_joy has blocks, too
             first = next(iter(values.values()))
-            for words, hint in _faults(values):
+            for words, hint in _command_faults(values):
                 yield remark_at(first.key, f"{section.title}: command {name!r} {words}", hint)
 
 
-def _faults(values: _Values) -> Iterator[tuple[str, str]]:
-    type_ = _text(values, "type")
+def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
+    type_ = _text_of(values, "type")
     if type_ not in _TYPES:
         said = f"is of type {type_!r}" if type_ else "has no type"
         yield said, f"write one of {', '.join(_TYPES)}"
@@ -64,17 +62,17 @@ def _faults(values: _Values) -> Iterator[tuple[str, str]]:
     middle, named, starts = _TYPES[type_]
     for word in (it for it in ("interface_type", named) if it not in values):
         yield f"has no {word}", f"add {word}"
-    kind = _text(values, "interface_type")
+    kind = _text_of(values, "interface_type")
     parts = kind.split("/")
     if kind and (len(parts) != 3 or parts[1] != middle):
         yield f"has the interface_type {kind!r}", f"write PACKAGE/{middle}/{parts[-1]}"
     if not any(it in values and values[it].value not in (None, []) for it in starts):
         yield "is started by nothing", f"add {starts[0]}, or {' or '.join(starts[1:])}"
     if type_ == "topic":
-        yield from _of_topic(values, kind)
+        yield from _topic_command_faults(values, kind)
 
 
-def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
+def _topic_command_faults(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
     mapped, fixed = (
         any(it.startswith(f"{name}.") for it in values) for name in (_MAPPINGS, _VALUE)
     )
@@ -95,7 +93,7 @@ def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
             yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "use one of these"
 
 
-def _text(values: _Values, name: str) -> str:
+def _text_of(values: _Values, name: str) -> str:
     value = values[name].value if name in values else None
     return value if isinstance(value, str) else ""
 
@@ -108,7 +106,7 @@ _Filters = Mapping[str, Mapping[str, Setting]]
 def broken_chains(file: NamedFile) -> Iterator[Finding]:
     """Report every chain of a node of laser_filters."""
     own = (it for it in sections(file) if it.node and it.node.package == "laser_filters")
-    for section, filters in ((it, chain) for it in own for chain in _chains(it).values()):
+    for section, filters in ((it, chain) for it in own for chain in _filters_by_chain(it).values()):
         last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1
         for number, parts in filters.items():
             if not number or int(number) > last:
@@ -119,7 +117,7 @@ def broken_chains(file: NamedFile) -> Iterator[Finding]:
         yield from _incomplete_filters(section, filters)
 
 
-def _chains(section: Section) -> Mapping[str, _Filters]:
+def _filters_by_chain(section: Section) -> Mapping[str, _Filters]:
     found: dict[str, dict[str, dict[str, Setting]]] = {}
     for it in section.whole.values():
         if part := FILTER.fullmatch(it.name):

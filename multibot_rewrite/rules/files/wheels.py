@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The size of a robot and its wheels by parameters, against the description: costmaps, and the
-wheels of a diff_drive_controller.
+"""The size of a robot and its wheels by parameters, against the description.
+
+Costmaps, and the wheels of a diff_drive_controller.
 
 Sources: nav2_costmap_2d costmap_2d_ros.cpp (a valid footprint counts, the radius then has no
 effect), inflation_layer.cpp ('The configured inflation radius is smaller than the computed
 inscribed radius'); ros2_controllers diff_drive_controller/src/diff_drive_controller.cpp
 (update_and_write_commands: the left wheels get (linear - angular * separation / 2) / radius, with
-the multipliers on both).
-"""
+the multipliers on both)."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot
@@ -62,12 +62,12 @@ def controller_sizes_of(file: NamedFile) -> Iterator[Finding]:
             continue
         robots: Robots | None = file.memo.get(Robots)
         subjects = robots.subjects if robots else ()
-        faults = [it for subject in subjects if (it := _faults(subject, section)) is not None]
+        faults = [it for subject in subjects if (it := _wheel_faults(subject, section)) is not None]
         if faults and all(faults):
             yield from faults[0]
 
 
-def _faults(subject: Subject, section: Section) -> list[Finding] | None:
+def _wheel_faults(subject: Subject, section: Section) -> list[Finding] | None:
     """Return where a description differs from a section; None if it lacks some of the wheels."""
     values = {it.name: it for it in section.given}
     left, right = (_wheels(subject, values.get(it)) for it in (LEFT, _RIGHT))
@@ -77,8 +77,8 @@ def _faults(subject: Subject, section: Section) -> list[Finding] | None:
     rolling = rolling_faults(subject.robot, left[0], right[0])
     hint = "the controller takes them for wheels that roll"
     return [
-        *_sizes(subject, values, left, right),
-        *_ways(node, left, right),
+        *_size_faults(subject, values, left, right),
+        *_axis_faults(node, left, right),
         *(remark_at(node, words, hint) for words in rolling),
     ]
 
@@ -90,7 +90,7 @@ def _wheels(subject: Subject, given: Setting | None) -> list[Wheel]:
     return known if len(known) == len(names) else []
 
 
-def _sizes(
+def _size_faults(
     subject: Subject, values: _Values, left: Sequence[Wheel], right: Sequence[Wheel]
 ) -> Iterator[Finding]:
     many = bool(left[1:])
@@ -113,7 +113,9 @@ def _sizes(
             yield remark_at(given.node, message, f"write {measured.best:.4g}")
 
 
-def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Iterator[Finding]:
+def _axis_faults(
+    node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]
+) -> Iterator[Finding]:
     one, other = left[0], right[0]
     names = f"{one.joint.name!r} and {other.joint.name!r}"
     if are_opposite(one, other):
@@ -143,14 +145,14 @@ class Size(NamedTuple):
 
 @rule("MB895", "costmap-robot-size", WARNING, formats=(PARAMS,))
 def robot_size(file: NamedFile) -> Iterator[Finding]:
-    """Report each costmap of a file."""
+    """Report what is wrong with the robot's size in each costmap of a file."""
     for section in sections(file):
         if section.node is not None and section.node.package == "nav2_costmap_2d":
-            yield from _of_costmap(file, section)
+            yield from _costmap_faults(file, section)
 
 
-def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
-    given, footprint = section.whole.get(_ROBOT_RADIUS), _by_footprint(section)
+def _costmap_faults(file: NamedFile, section: Section) -> Iterator[Finding]:
+    given, footprint = section.whole.get(_ROBOT_RADIUS), _footprint_size(section)
     value = given.value if given else None
     radius = Size(given, value, value) if given and isinstance(value, float) and value > 0 else None
     size = footprint or radius
@@ -163,7 +165,7 @@ def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
         what = f"{_ROBOT_RADIUS} has no effect with a footprint, and is another size"
         message = f"{section.title}: {what}"
         yield remark_at(radius.given.node, message, f"leave out {_ROBOT_RADIUS}")
-    yield from _inflation(section, size)
+    yield from _inflation_faults(section, size)
     # How far the one description of the package reaches; 0 where that is not known.
     robots: Robots | None = file.memo.get(Robots)
     subjects = robots.subjects if robots else ()
@@ -178,7 +180,7 @@ def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
         yield remark_at(size.given.node, message, hint)
 
 
-def _by_footprint(section: Section) -> Size | None:
+def _footprint_size(section: Section) -> Size | None:
     given = section.whole.get(_FOOTPRINT)
     points = polygon_of(given.value) if given and isinstance(given.value, str) else None
     if not given or not points or len(points) < 3:
@@ -193,13 +195,14 @@ def _inscribed_radius(points: Sequence[tuple[float, float]]) -> float:
 
 
 def _to_edge(one: tuple[float, float], other: tuple[float, float]) -> float:
+    """Return the distance of the origin from the edge between two points."""
     (x, y), (u, v) = one, other
     length = hypot(u - x, v - y)
     along = max(0.0, min(1.0, -(x * (u - x) + y * (v - y)) / length**2)) if length else 0.0
     return hypot(x + along * (u - x), y + along * (v - y))
 
 
-def _inflation(section: Section, size: Size) -> Iterator[Finding]:
+def _inflation_faults(section: Section, size: Size) -> Iterator[Finding]:
     for name, given in section.whole.items():
         layer, _, last = name.rpartition(".")
         class_ = section.whole.get(f"{layer}.plugin")

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with the models that a launch spawns: two of one name, at one place, on one topic,
-and in a world that does not run what they need; and with the rows of their bridges.
+"""What is wrong with the models that a launch spawns, and with the rows of their bridges.
+
+Two of one name, at one place, on one topic, or in a world that does not run what they need.
 
 Source: ros_gz_sim jazzy create.cpp (``-name``, ``-x`` ... and ``-allow_renaming``); gz-sim8
 src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created);
 src/ServerConfig.cc and src/SimulationRunner.cc (a world without any plugin gets those of
 server.config: physics, user commands, scene broadcaster); src/systems/sensors and the systems of
-other sensors.
-"""
+other sensors."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterator
@@ -51,7 +51,7 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG702", "robots-in-each-other")
 def in_each_other(launched: Launched) -> Iterator[Finding]:
-    """Report descriptions in URDF: a model in SDF may have a pose of its own."""
+    """Report models at one place; only URDF: a model in SDF may have a pose of its own."""
     models = [it for it in launched.simulated if it.root.tag == "robot"]
     placed = [(it, place, filled_by(it.root)) for it in models for place in _place_of(it)]
     level = ERROR if any(any(place) for _, place, _ in placed) else WARNING
@@ -71,7 +71,7 @@ def _place_of(it: InSimulator) -> Iterator[tuple[float, ...]]:
 
 @launch_rule("MG703", "gz-topic-of-two-models")
 def shared_topic(launched: Launched) -> Iterator[Finding]:
-    """Report once for two models; transforms of all robots may have one topic."""
+    """Report topics of two models, once for both; all robots' transforms may share one."""
     models = launched.simulated
     having: dict[str, list[int]] = defaultdict(list)
     shared: dict[tuple[int, int], list[str]] = defaultdict(list)
@@ -92,7 +92,7 @@ def shared_topic(launched: Launched) -> Iterator[Finding]:
 @launch_rule("MG704", "command-not-bridged")
 def not_bridged(launched: Launched) -> Iterator[Finding]:
     """Yield the gz topics that a model reads and no bridge fills, if another model's is bridged."""
-    for it, gz in _lacking(launched, inwards=True):
+    for it, gz in _unbridged_topics(launched, inwards=True):
         message = f"{it.name} reads gz topic {gz}, and no bridge passes anything on to it"
         hint = "add a row to Gazebo for it, as another model has one"
         yield at(not_bridged, it.place, message, hint, names=(gz,))
@@ -100,29 +100,29 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG707", "data-not-bridged")
 def not_brought(launched: Launched) -> Iterator[Finding]:
-    """Report gz topics without their models' names: those of two descriptions differ in meaning."""
-    for it, gz in _lacking(launched, inwards=False):
+    """Report gz topics that no bridge brings to ROS, if it brings those of another model."""
+    for it, gz in _unbridged_topics(launched, inwards=False):
         message = f"{it.name} sends gz topic {gz}, and no bridge brings it to ROS"
         hint = "add a row to ROS for it, as another model has one"
         yield at(not_brought, it.place, message, hint, names=(gz,))
 
 
-def _lacking(launched: Launched, inwards: bool) -> Iterator[tuple[InSimulator, str]]:
+def _unbridged_topics(launched: Launched, inwards: bool) -> Iterator[tuple[InSimulator, str]]:
     """Yield the topics of models that no bridge has, where one has that of another model."""
-    told = {it.gz for it in _rows(launched) if it.inwards is inwards}
+    told = {it.gz for it in _bridge_rows(launched) if it.inwards is inwards}
     every = [
         (model, (it.ros_type, f"/{it.gz.lstrip('/')}"))
         for model in launched.simulated
         for it in model.topics
         if (it.direction == DIRECTIONS["out"]) is inwards
     ]
-    alike = {_plain(model, one) for model, one in every if one[1] in told}
+    alike = {_topic_without_robot(model, one) for model, one in every if one[1] in told}
     for model, one in every:
-        if one[1] not in told and _plain(model, one) in alike:
+        if one[1] not in told and _topic_without_robot(model, one) in alike:
             yield model, one[1]
 
 
-def _plain(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
+def _topic_without_robot(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
     """Return a topic of a model without its name, and without the namespace of its description."""
     kind, gz = topic
     own = {model.name, *model.words.get("-topic", "").strip("/").split("/")[:-1]}
@@ -134,10 +134,10 @@ def without_system(launched: Launched) -> Iterator[Finding]:
     """Yield the systems that a world does not load and no robot brings."""
     models = launched.simulated
     roots = [it.root for it in models]
-    brought = {_system(it.get("filename", "")) for root in roots for it in root.iter("plugin")}
+    brought = {_system_name(it.get("filename", "")) for root in roots for it in root.iter("plugin")}
     for world in worlds(launched):
         found = list(world.root.iterfind("world/plugin"))
-        there = {_system(it.get("filename", "")) for it in found} if found else set(DEFAULTS)
+        there = {_system_name(it.get("filename", "")) for it in found} if found else set(DEFAULTS)
         for system, why in needed_systems((it.name, it.root) for it in models):
             if system not in {*there, *brought}:
                 message = f"world {world.file} does not load the system {system}: {why}"
@@ -145,7 +145,7 @@ def without_system(launched: Launched) -> Iterator[Finding]:
                 yield at(without_system, world.place, message, hint)
 
 
-def _system(library: str) -> str:
+def _system_name(library: str) -> str:
     return library_key(library).removeprefix("gz-sim-").removesuffix("-system")
 
 
@@ -158,7 +158,7 @@ class _Row(NamedTuple):
     node: Run
 
 
-def _rows(launched: Launched) -> Iterator[_Row]:
+def _bridge_rows(launched: Launched) -> Iterator[_Row]:
     for it in launched.nodes:
         for end, inside in bridged_by(it):
             # A node with a name that ROS refuses does not start.
@@ -179,7 +179,7 @@ def to_another_robot(launched: Launched) -> Iterator[Finding]:
     # A topic that models share, such as one tf for all, is of none of them.
     owners = {topic: name for topic, name in sent if of_several[topic] == 1}
     names = {it.name for it in models if it.topics}
-    rows = [it for it in _rows(launched) if owners.get(it.gz) and len(names) > 1]
+    rows = [it for it in _bridge_rows(launched) if owners.get(it.gz) and len(names) > 1]
     spaces = {word for it in launched.nodes for word in it.namespace.split("/") if word}
     usual = {_plain_row(it, owners[it.gz]) for it in rows if owners[it.gz] in it.ros.split("/")}
     for it in rows:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What of a launch file does not start, ends as soon as it starts, or waits for ever: the launch
-itself, programs, controllers, models.
+"""What of a launch file does not start, ends as soon as it starts, or waits for ever.
+
+The launch itself, programs, controllers, models.
 
 Source: launch jazzy launch_service.py (an exception ends it); ros2_control spawner.py (it waits for
 the services of its manager; what is loaded already is not loaded again) and controller_manager.cpp
@@ -8,8 +9,7 @@ the services of its manager; what is loaded already is not loaded again) and con
 ``node_names``); joint_state_publisher humble to jazzy, joint_state_publisher.py (source_list);
 robot_state_publisher jazzy robot_state_publisher.cpp (its robot_description is XML); rmw
 validate_node_name.c; ros_gz_sim jazzy create.cpp (gflags: a double); ros_gz_bridge jazzy
-parameter_bridge.cpp.
-"""
+parameter_bridge.cpp."""
 
 from __future__ import annotations
 
@@ -23,9 +23,8 @@ from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import check_node_name, expand, resolve_bound
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
-from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts, names_its_process
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of
@@ -57,7 +56,7 @@ def fails(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG722", "controller-spawned-twice")
 def spawned_twice(launched: Launched) -> Iterator[Finding]:
-    """Report the last of them."""
+    """Report controllers that are spawned twice, at the last spawner."""
     spawned = launched.spawned
     for (name, manager), count in Counter((it.name, it.manager) for it in spawned).items():
         if count > 1:
@@ -67,9 +66,7 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
 
 
 def _no_manager(launched: Launched) -> Iterator[Finding]:
-    """Yield the spawners whose manager nothing starts: an error if another manager is there, or if
-    nodes and description are known. ``names`` are the missing manager and the one that may be
-    meant."""
+    """Yield the spawners whose manager nothing starts; inconclusive if other files may start it."""
     there = [it.full_name for it in launched.nodes if _is_known_as(it, MANAGER)]
     described = bool(launched.models.found) and not launched.models.lost
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
@@ -186,8 +183,7 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
 
 
 def moves_nothing(facts: NodeFacts, given: Run) -> bool:
-    """Return whether a controller commands the joints of its parameters, and these name none. A
-    joint without an interface counts as named."""
+    """Return whether a controller commands the joints of its parameters, and these name none."""
     commands = [claim for claim in facts.claims if claim.kind == COMMAND]
     by_joint = bool(commands) and all(claim.template.startswith("<") for claim in commands)
     owners = (it._replace(template=it.template.partition("/")[0], condition="") for it in commands)
@@ -198,7 +194,7 @@ def moves_nothing(facts: NodeFacts, given: Run) -> bool:
 def not_listed(launched: Launched) -> Iterator[Finding]:
     """Report lifecycle nodes that no manager lists under their full name."""
     managers = [it for it in launched.nodes if _is_known_as(it, LIFECYCLE_MANAGER)]
-    listed = {name: it for it in managers for name in _listed(it)}
+    listed = {name: it for it in managers for name in _managed_nodes(it)}
     known = all(isinstance(it.value("node_names"), list) for it in managers)
     started = {it.full_name: it for it in launched.nodes}
     for it in launched.nodes if managers and known else ():
@@ -220,9 +216,9 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
 
 
 def keeps_no_bond(node: NodeFacts) -> bool:
-    """Return whether it has a life cycle, and no bond with its manager, by its parameters.
-    nav2_lifecycle_manager jazzy, lifecycle_manager.cpp: without one it aborts after
-    ``bond_timeout``."""
+    """Return whether a node has a life cycle and keeps no bond: its manager then aborts.
+
+    Source: nav2_lifecycle_manager jazzy, lifecycle_manager.cpp (``bond_timeout``)."""
     names = [it.name for it in node.endpoints]
     return f"~{_CHANGE}" in names and _BOND not in names
 
@@ -242,9 +238,10 @@ def is_managed(kind: str) -> bool:
     return kind in NAV2 and kind not in _SELF
 
 
-def _listed(it: Run) -> Iterator[str]:
-    """Yield the nodes whose services a manager calls, after its remap rules
-    (nav2_lifecycle_manager, lifecycle_service_client.cpp)."""
+def _managed_nodes(it: Run) -> Iterator[str]:
+    """Yield the nodes whose services a manager calls, after its remap rules.
+
+    Source: nav2_lifecycle_manager, lifecycle_service_client.cpp."""
     names = it.value("node_names")
     bound = bound_of(it.name, it.namespace, it.rules)
     for one in names if isinstance(names, list) else ():
@@ -302,10 +299,10 @@ def ends(launched: Launched) -> Iterator[Finding]:
             message = f"{node.full_name}: {word!r} is no row of a bridge"
             yield at(ends, node.place, message, "write TOPIC@ROS_TYPE[GZ_TYPE, or ] to Gazebo")
         if (node.place.file, node.place.line) not in unsure:
-            yield from _described(node)
+            yield from _publishers_without_description(node)
 
 
-def _described(it: Run) -> Iterator[Finding]:
+def _publishers_without_description(it: Run) -> Iterator[Finding]:
     """Yield robot_state_publishers without a description, or with one that is no XML."""
     is_one = it.fact.known == STATE_PUBLISHER
     if not is_one or it.arguments or it.is_untold("robot_description"):

@@ -51,11 +51,11 @@ def implausible(launched: Launched) -> Iterator[Finding]:
     for it in launched.nodes:
         if it.fact.known != STATIC:
             continue
-        for message, hint in _faults(it):
+        for message, hint in _transform_faults(it):
             yield at(implausible, it.place, f"{it.full_name}: {message}", hint)
 
 
-def _faults(it: Run) -> Iterator[tuple[str, str]]:
+def _transform_faults(it: Run) -> Iterator[tuple[str, str]]:
     given = {one.parameter: one.default for one in it.fact.frames}
     parent, child = (given.get(key, "") for key in ("frame_id", "child_frame_id"))
     if parent and parent == child:
@@ -82,15 +82,17 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
-    """Report rules only for a mistyped name: the code of a node may have more than is known. A rule
-    is harmless if a parameter of the node already has its name or target."""
+    """Report rules for a mistyped name of a node, if no parameter has or switches off the name."""
+    library = built_in(launched.release).nodes
     for it in launched.nodes:
         above = f"{it.full_name.rpartition('/')[0]}/"
-        known = it.fact.endpoints
-        names = [end.name.removeprefix(above).lstrip("/~") for end in known]
+        ends = (*it.fact.endpoints, *library.get(it.fact.known, it.fact).endpoints)
+        names = [end.name.removeprefix(above).lstrip("/~") for end in ends]
         for old, new in it.rules:
             bare = old.lstrip("/~")
-            asked = ":" not in old and not {bare, new.lstrip("/~")} & {*names}
+            # Of an image the names of its transports are below its own.
+            real = {bare, bare.rpartition("/")[0], new.lstrip("/~")}
+            asked = ":" not in old and real.isdisjoint(names)
             near = nearest(bare, names, SLIP) if asked else ""
             if near and not bare.startswith("__"):
                 message = f"{it.full_name}: the remap rule for {old} matches nothing"
@@ -107,7 +109,7 @@ def not_there(launched: Launched) -> Iterator[Finding]:
     """Report missing parameter files, files of parameters, those after ``-file`` and ``-d``, worlds."""
     told: set[tuple[str, int, str]] = set()
     for note in launched.graph.notes:
-        if note.parameters and note.file and _is_ours(note.file):
+        if note.parameters and note.file and _is_of_this_machine(note.file):
             told.add((note.place.file, note.place.line, note.file))
             yield at(not_there, note.place, note.message, _PATH, names=(note.file,))
     named = [
@@ -122,15 +124,15 @@ def not_there(launched: Launched) -> Iterator[Finding]:
         named += [(who, node.place, path) for path in (*words, *world_files(node))]
     for who, place, path in named:
         key = (place.file, place.line, path)
-        is_meant = os.path.isabs(path) and _is_ours(path)
+        is_meant = os.path.isabs(path) and _is_of_this_machine(path)
         if is_meant and not os.path.exists(path) and key not in told:
             told.add(key)
             message = f"{who} is given {path}, which is not there"
             yield at(not_there, place, message, _PATH, names=(path,))
 
 
-def _of_no_node(launched: Launched) -> Iterator[Finding]:
-    """Report sections of no running node. A file that a launch makes is not a user's file."""
+def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
+    """Report sections of no running node; a file that a launch makes is not a user's file."""
     every = {it.full_name for it in launched.nodes} | {it.name for it in launched.system.nodes}
     nodes = lists_by_key((last_word(it), it) for it in every)
     started = lists_by_key(((it.place, it.program), it.full_name) for it in launched.nodes)
@@ -171,15 +173,16 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
         yield at(of_no_node, place, *section_message(path, names))
 
 
-of_no_node = OF_NO_NODE._replace(check=_of_no_node)
+of_no_node = OF_NO_NODE._replace(check=_sections_of_no_node)
 
 
+# That of libyaml is faster.
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _LEFT = lazy_compile(rf"<[A-Za-z_]\w*>|\$\({IN_SUBSTITUTION}\)|\$\{{\w+\}}")
 
 
 def _placeholders(launched: Launched) -> Iterator[Finding]:
-    """Report placeholders in parameter files as nodes get them, and in the words that start them;
-    one with blanks is a text. The share folder of a missing package is looked up at the start."""
+    """Report placeholders in parameter files as nodes get them, and in the words that start them."""
     given: list[tuple[Place, str]] = []
     files: dict[tuple[str, str], Place] = {}
     for it in launched.graph.nodes:
@@ -188,7 +191,7 @@ def _placeholders(launched: Launched) -> Iterator[Finding]:
             files.setdefault((given_file.file, given_file.text), it.place)
     for (file, text), start in files.items():
         with suppress(yaml.YAMLError):
-            for one in yaml.scan(text) if _LEFT.search(text) else ():
+            for one in yaml.scan(text, Loader=_LOADER) if _LEFT.search(text) else ():
                 line = Place(file, one.start_mark.line + 1) if file else start
                 given += [(line, one.value)] if isinstance(one, yaml.ScalarToken) else []
     told = set()
@@ -224,7 +227,7 @@ _PATH = "correct the path, or install the file"
 _TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 
 
-def _is_ours(path: str) -> bool:
+def _is_of_this_machine(path: str) -> bool:
     """Return whether it may be judged here. What another machine has, or a program makes, may not."""
     folder = os.path.dirname(path)
     return os.path.isdir(folder) and folder not in _TEMPORARY

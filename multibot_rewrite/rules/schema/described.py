@@ -66,13 +66,13 @@ def described(name: str) -> SdfPart | None:
         tag, type_, *rest = words
         row = SdfRow(tag, type_, rest[0] if rest else type_)
         for word in rest[1:]:
-            row = _with(row, word)
+            row = _with_word(row, word)
         rows[tag] = (*rows.get(tag, ()), row)
     needed = tuple(it for it, its in rows.items() if any(row.required for row in its))
     return SdfPart(name, tuple(head.partition("]")[2].split()), rows, needed)
 
 
-def _with(row: SdfRow, word: str) -> SdfRow:
+def _with_word(row: SdfRow, word: str) -> SdfRow:
     """Return a row with what one word of its line says: a section, a range of numbers or versions."""
     if word[0] == ">":
         return row._replace(section=word[1:])

@@ -63,8 +63,8 @@ def read_faults(document: Document) -> tuple[Problem, ...]:
     while level:
         below: dict[str, list[etree._Element]] = defaultdict(list)
         for name, elements in level.items():
-            for element in _to_check(known, name, elements):
-                faults += _attributes(element, known.sections[name], known.version)
+            for element in _doubtful_elements(known, name, elements):
+                faults += _attribute_faults(element, known.sections[name], known.version)
             faults += _sorted_children(known, name, elements, below)
         level = below
     return tuple(faults)
@@ -87,14 +87,14 @@ def _sorted_children(
         above, *columns = zip(*alike, strict=True)
         if sections is None:
             for parent in above:
-                yield from _children(parent, known.sections[name], known)
+                yield from _child_faults(parent, known.sections[name], known)
             sections = sections_once(known.version, name, tags)
         for section, children in zip(sections, columns, strict=True):
             if section:
                 below[section] += children
 
 
-def _to_check(
+def _doubtful_elements(
     known: Schema, name: str, elements: Iterable[etree._Element]
 ) -> Iterable[etree._Element]:
     """Return the elements whose attributes may have a fault."""
@@ -125,14 +125,16 @@ def _with_odd_values(
     return found
 
 
-def _attributes(element: etree._Element, section: UrdfPart, version: Version) -> Iterator[Problem]:
+def _attribute_faults(
+    element: etree._Element, section: UrdfPart, version: Version
+) -> Iterator[Problem]:
     """Yield all faults of an element's attributes."""
     keys = [str(key) for key in element.attrib]
     yield from _unknown_attributes(element, section, keys)
     for key in keys:
         kind = section.attributes.get(key)
         if kind is not None and kind.type:
-            yield from _value(element, kind, key, version)
+            yield from _value_faults(element, kind, key, version)
         if kind is not None and kind.instead_of in keys:
             message = f"<{element.tag}> has both {kind.instead_of} and {key}"
             yield fault("rotation-twice", element, key, message)
@@ -155,7 +157,7 @@ def _unknown_attributes(
     for key in keys:
         if key in known or key == "name" or not is_own(key):
             continue
-        meant = _near(key, free)
+        meant = _nearest_name(key, free)
         hint = f"did you mean {meant!r}?" if meant else ""
         where = f"<{element.tag}> has an attribute {key!r}, which no URDF parser reads"
         if meant in missing:
@@ -170,7 +172,7 @@ def _unknown_attributes(
         yield fault("missing", element, None, f"<{element.tag}> has no {names}")
 
 
-def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Iterator[Problem]:
+def _child_faults(element: etree._Element, section: UrdfPart, schema: Schema) -> Iterator[Problem]:
     """Yield children that are missing, repeated, or that no parser knows, or not yet."""
     known = section.children
     tags = [child.tag for child in element.iterchildren("*")]
@@ -182,7 +184,7 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
             yield fault("needs-later-version", child, None, message)
         if child.tag in known or not is_own(child.tag):
             continue
-        meant = _near(str(child.tag), _CORE if section.name == ROBOT else known)
+        meant = _nearest_name(str(child.tag), _CORE if section.name == ROBOT else known)
         if meant in missing:
             missing.remove(meant)
             message = f"<{element.tag}> has no <{meant}>"
@@ -237,7 +239,7 @@ def canonical(element: etree._Element) -> bytes:
     return etree.tostring(element, method="c14n", with_tail=False)
 
 
-def _near(name: str, known: Collection[str]) -> str:
+def _nearest_name(name: str, known: Collection[str]) -> str:
     """Return the known name that is most like another: the same letters, or nearly all of them."""
     low = name.lower()
     letters = sorted(low)
@@ -245,7 +247,7 @@ def _near(name: str, known: Collection[str]) -> str:
     return same or nearest(low, known, MISTYPED)
 
 
-def _value(
+def _value_faults(
     element: etree._Element, kind: Kind, attribute: str, version: Version
 ) -> Iterator[Problem]:
     """Yield what is wrong with a value."""
@@ -253,7 +255,7 @@ def _value(
     where = f"{element.tag}@{attribute} is {shortened(value)!r}"
     if kind.type == "one":
         if value not in kind.choices:
-            meant = _near(value.strip(), kind.choices)
+            meant = _nearest_name(value.strip(), kind.choices)
             hint = f"did you mean {meant!r}?" if meant else ""
             message = f"{where}, not one of {', '.join(kind.choices)}"
             yield fault("word", element, attribute, message, hint)

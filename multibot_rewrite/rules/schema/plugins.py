@@ -34,12 +34,12 @@ def plugin_faults(
     section = values_of_plugin(element, definitions, of_ros_1)
     if section is None:
         return
-    yield from _children(element, "", section, definitions)
+    yield from _child_faults(element, "", section, definitions)
     given = {str(it.tag) for it in element}
     yield from _missing_values(element, section, given, definitions.release)
 
 
-def _children(
+def _child_faults(
     element: _Element, above: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
     """Yield the faults of what is in a plugin, or in its parameter ``above``."""
@@ -47,9 +47,9 @@ def _children(
         if not is_own(child.tag):
             continue
         path = f"{above}{child.tag}"
-        yield from _parameter(child, path, text_of(child), section, definitions)
+        yield from _parameter_faults(child, path, text_of(child), section, definitions)
         if path in section.blocks:
-            yield from _children(child, f"{path}/", section, definitions)
+            yield from _child_faults(child, f"{path}/", section, definitions)
 
 
 def hardware_faults(hardware: _Element, definitions: Definitions) -> Iterator[Problem]:
@@ -61,18 +61,18 @@ def hardware_faults(hardware: _Element, definitions: Definitions) -> Iterator[Pr
     for child in hardware.iterchildren("param"):
         name = child.get("name", "")
         given.setdefault(name, child)
-        yield from _parameter(child, name, text_of(child), section, definitions)
+        yield from _parameter_faults(child, name, text_of(child), section, definitions)
     yield from _missing_values(hardware, section, given, definitions.release)
 
 
-def _parameter(
+def _parameter_faults(
     child: _Element, name: str, text: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
     row, release = section.rows.get(name), definitions.release
     above, _, own = name.rpartition("/")
     if row is None:
         if not section.is_open and f"{above}/*" not in section.rows:
-            yield from _unread(child, above, own, section, definitions)
+            yield from _place_faults(child, above, own, section, definitions)
     elif not has_release(row.releases, release):
         message = f"{title(section)} of {release} does not read {name!r}"
         hint = f"that of {', '.join(releases_with(row.releases))} does"
@@ -81,7 +81,7 @@ def _parameter(
         where = f"{row.name} {shortened(text)!r}"
         wrong = misread(row.type, text)
         if not wrong:
-            yield from _measure(child, row, text, where)
+            yield from _number_faults(child, row, text, where)
         if wrong:
             instead = f", and counts as {'false' if row.type == 'boolean' else 0}" * wrong.fails
             yield fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
@@ -92,33 +92,32 @@ def _parameter(
             yield fault("word", child, "", message, hint, WARNING)
 
 
-def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Problem]:
+def _number_faults(child: _Element, row: Value, text: str, where: str) -> Iterator[Problem]:
     """Yield a fault for a number outside its sensible range, or an angle of more than a turn."""
     value = number_in(text)
     if value is None:
         return
     if row.unit == "nonzero" and not any(map(number_in, text.split())):
-        message = f"{where} has to be other than 0{_in_brackets(row.checked)}"
+        message = f"{where} has to be other than 0{_bracketed(row.checked)}"
         yield fault("range", child, "", message, "", WARNING)
     elif row.low is not None and (value < row.low or (row.is_open and value == row.low)):
         limit = f"has to be {'above' if row.is_open else 'at least'} {row.low:g}"
-        yield fault("range", child, "", f"{where} {limit}{_in_brackets(row.checked)}", "", WARNING)
+        yield fault("range", child, "", f"{where} {limit}{_bracketed(row.checked)}", "", WARNING)
     elif row.high is not None and value > row.high:
-        message = f"{where} may be {row.high:g} at most{_in_brackets(row.checked)}"
+        message = f"{where} may be {row.high:g} at most{_bracketed(row.checked)}"
         yield fault("range", child, "", message, "", WARNING)
     elif row.unit == "rad" and abs(value) > TURN:
         hint = f"{value:g} degrees are {radians(value):.4g}"
         yield fault("degrees", child, "", f"{where} is more than a turn: it is in radians", hint)
 
 
-def _unread(
+def _place_faults(
     child: _Element, above: str, name: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
-    """Yield a fault for a parameter that is not read where it is. Code may read it by a function
-    that gets an element, so one read anywhere is fine, unless its block is there."""
+    """Yield a fault for a parameter that is read nowhere, or only inside a block that is there."""
     blocks = section.blocks_of.get(name)
     if blocks is None:
-        yield from _unknown(child, above, name, section, definitions)
+        yield from _unknown_parameter(child, above, name, section, definitions)
         return
     parent = child.getparent()
     there = (it for it in blocks if it and parent is not None and parent.find(it) is not None)
@@ -127,7 +126,7 @@ def _unread(
         yield fault("misplaced", child, None, message, f"move it into <{beside}>")
 
 
-def _unknown(
+def _unknown_parameter(
     child: _Element, above: str, name: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
     inside = f" in <{above}>" if above else ""
@@ -185,11 +184,11 @@ def _missing_values(
     for name, row in section.rows.items():
         if row.required and name not in given and has_release(row.releases, release):
             message = f"{title(section)} needs {name!r}"
-            hint = f"without it, it is not loaded{_in_brackets(row.place)}"
+            hint = f"without it, it is not loaded{_bracketed(row.place)}"
             yield fault("missing", element, None, message, hint)
 
 
-def _in_brackets(place: str) -> str:
+def _bracketed(place: str) -> str:
     return f" ({place})" if place else ""
 
 

@@ -59,7 +59,7 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
     """Return every fault in these ``<gazebo>`` elements."""
     version, taken = version_of_release(release), described("urdf")
     assert taken
-    found = tuple(it for block in blocks for it in _block(block, robot, version, taken))
+    found = tuple(it for block in blocks for it in _block_faults(block, robot, version, taken))
     return _by_reader(found, blocks[0].getroottree().getroot(), release)
 
 
@@ -67,7 +67,7 @@ def model_faults(root: _Element, release: str) -> tuple[Problem, ...]:
     """Return every fault in the models and worlds of an ``<sdf>``."""
     version = version_of_release(release)
     tops = root.iterchildren("model", "world")
-    found = tuple(it for top in tops for it in _element(top, str(top.tag), version))
+    found = tuple(it for top in tops for it in _element_faults(top, str(top.tag), version))
     return _by_reader(found, root, release)
 
 
@@ -78,7 +78,9 @@ def _by_reader(found: tuple[Problem, ...], root: _Element, release: str) -> tupl
     return tuple(it._replace(level=_MILD.get(it.code, it.level)) for it in found)
 
 
-def _block(block: _Element, robot: Robot, version: Version, taken: SdfPart) -> Iterator[Problem]:
+def _block_faults(
+    block: _Element, robot: Robot, version: Version, taken: SdfPart
+) -> Iterator[Problem]:
     name = block.get("reference", "")
     if name and name not in robot.link and name not in robot.joint:
         return  # MB202 reports it
@@ -86,14 +88,14 @@ def _block(block: _Element, robot: Robot, version: Version, taken: SdfPart) -> I
     for child in block.iterchildren("*"):
         tag = str(child.tag)
         if tag in taken.rows:
-            yield from _taken(child, taken.rows[tag][0], home)
+            yield from _converter_faults(child, taken.rows[tag][0], home)
         elif tag not in _MERGED:
             known = described(home)
             assert known
-            yield from _child(child, home, known, version, taken.rows)
+            yield from _child_faults(child, home, known, version, taken.rows)
 
 
-def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
+def _converter_faults(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
     """Yield the fault of a tag that the converter itself reads."""
     at = "value" if child.get("value") else ""
     text = child.get("value") or text_of(child)
@@ -118,7 +120,7 @@ def _parents_of(tag: str) -> tuple[str, ...]:
     return ("joint",) if tag in OF_JOINTS else ("link",)
 
 
-def _child(
+def _child_faults(
     child: _Element, home: str, known: SdfPart, version: Version, also: Mapping[str, object]
 ) -> Iterator[Problem]:
     """Yield faults of a child of an element with section ``known``; ``also`` are further tags."""
@@ -126,21 +128,21 @@ def _child(
     rows = known.rows.get(tag)
     if rows is None:
         if is_own(tag):
-            yield from _unknown(child, known, home, also)
+            yield from _unknown_child(child, known, home, also)
         return
     row = _of_version(rows, version)
     if row.first > version:
-        message = f"<{tag}> in <{home}> is of SDF {_text(row.first)}"
-        hint = f"Gazebo of this release reads up to SDF {_text(version)}"
+        message = f"<{tag}> in <{home}> is of SDF {_version_text(row.first)}"
+        hint = f"Gazebo of this release reads up to SDF {_version_text(version)}"
         yield fault("later", child, None, message, hint)
         return
-    yield from _value(child, "", row, text_of(child), known, version)
+    yield from _value_faults(child, "", row, text_of(child), known, version)
     # The converter of sdformat leaves out what an older SDF had here, such as the <frame> of a sensor.
     if row.section and (row.last or version) >= version:
-        yield from _element(child, row.section, version)
+        yield from _element_faults(child, row.section, version)
 
 
-def _element(element: _Element, section: str, version: Version) -> Iterator[Problem]:
+def _element_faults(element: _Element, section: str, version: Version) -> Iterator[Problem]:
     """Yield faults in attributes and children of an element that has a section."""
     known = described(section)
     if known is None:
@@ -149,7 +151,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Prob
         rows = known.rows.get(f"@{key}")
         if rows is not None:
             row = _of_version(rows, version)
-            yield from _value(element, key, row, text, known, version)
+            yield from _value_faults(element, key, row, text, known, version)
         elif is_own(key):
             free = [it[1:] for it in known.rows if it[0] == "@" and it[1:] not in element.attrib]
             if near := nearest(key, free):
@@ -164,7 +166,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Prob
     if "*" in known.rows or not len(element):
         return
     for child in element.iterchildren("*"):
-        yield from _child(child, str(element.tag), known, version, {})
+        yield from _child_faults(child, str(element.tag), known, version, {})
 
 
 def _of_version(rows: tuple[SdfRow, ...], version: Version) -> SdfRow:
@@ -175,7 +177,7 @@ def _of_version(rows: tuple[SdfRow, ...], version: Version) -> SdfRow:
     return older[-1] if older else rows[0]
 
 
-def _value(
+def _value_faults(
     element: _Element, at: str, row: SdfRow, text: str, known: SdfPart, version: Version
 ) -> Iterator[Problem]:
     """Yield what is wrong with a value: of the attribute ``at``, or the text."""
@@ -188,14 +190,21 @@ def _value(
     turned = row.type == "pose" and element.get("rotation_format") == QUATERNION
     if wrong := misread(QUATERNION if turned else row.type, text):
         level = ERROR if wrong.fails else WARNING
-        yield fault("value", element, at, f"{_where(element, at, text)} {wrong.problem}", "", level)
+        yield fault(
+            "value",
+            element,
+            at,
+            f"{_place_and_value(element, at, text)} {wrong.problem}",
+            "",
+            level,
+        )
     elif row.low is not None or row.high is not None:
-        yield from _range(element, at, row, text)
+        yield from _range_faults(element, at, row, text)
     elif row.type == "pose" or row.name in ANGLES:
-        yield from _degrees(element, at, row, text)
+        yield from _degree_faults(element, at, row, text)
 
 
-def _where(element: _Element, at: str, text: str) -> str:
+def _place_and_value(element: _Element, at: str, text: str) -> str:
     """Return how a message names a value."""
     return f"{_element_in_words(element, at)} {shortened(text)!r}"
 
@@ -204,30 +213,30 @@ def _element_in_words(element: _Element, at: str) -> str:
     return f"{element.tag}@{at}" if at else f"<{element.tag}>"
 
 
-def _degrees(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Problem]:
+def _degree_faults(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Problem]:
     """Yield a fault for an angle of more than a turn, unless it is in degrees or a quaternion."""
     if element.get("degrees", "").lower() in ("true", "1") or element.get("rotation_format"):
         return
     angles = [number_in(it) or 0.0 for it in (text.split()[3:] if row.type == "pose" else [text])]
     worst = max(angles, key=abs, default=0.0)
     if abs(worst) > TURN:
-        message = f"{_where(element, at, text)} is more than a turn: it is in radians"
+        message = f"{_place_and_value(element, at, text)} is more than a turn: it is in radians"
         yield fault("degrees", element, at, message, f"{worst:g} degrees are {radians(worst):.4g}")
 
 
-def _range(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Problem]:
+def _range_faults(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Problem]:
     value = number_in(text)
     if value is None:
         return
     if row.low is not None and value < row.low:
         message = f"is below {row.low:.10g}, the least that SDF allows"
-        yield fault("range", element, at, f"{_where(element, at, text)} {message}")
+        yield fault("range", element, at, f"{_place_and_value(element, at, text)} {message}")
     elif row.high is not None and value > row.high:
         message = f"is above {row.high:.10g}, the most that SDF allows"
         # The hint for an angle that was written in degrees.
         is_angle = ("fov" in row.name or "angle" in row.name) and value > tau
         hint = f"{value:g} degrees are {radians(value):.4g} radians" if is_angle else ""
-        yield fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
+        yield fault("range", element, at, f"{_place_and_value(element, at, text)} {message}", hint)
 
 
 def _unknown_word(
@@ -262,7 +271,7 @@ def words(name: str) -> tuple[str, ...]:
     return tuple(found.rows) if found else ()
 
 
-def _unknown(
+def _unknown_child(
     child: _Element, known: SdfPart, home: str, also: Mapping[str, object]
 ) -> Iterator[Problem]:
     tag = str(child.tag)
@@ -276,7 +285,7 @@ def _unknown(
     if near:
         yield fault("misspelt", child, None, message, f"did you mean <{near}>?")
     else:
-        homes = [it for it in _homes(tag) if it != home] or _siblings_with(child, known)
+        homes = [it for it in _parents_in_sdf(tag) if it != home] or _siblings_with(child, known)
         hint = f"move it into <{'> or <'.join(homes)}>" if homes else ""
         yield fault("misplaced" if homes else "not-read", child, None, message, hint)
 
@@ -292,7 +301,7 @@ def _siblings_with(child: _Element, known: SdfPart) -> tuple[str, ...]:
 
 
 @lru_cache
-def _homes(tag: str) -> tuple[str, ...]:
+def _parents_in_sdf(tag: str) -> tuple[str, ...]:
     """Return the elements of SDF that have such a child, if there are few."""
     found = {
         part.partition("]")[0].rpartition(".")[2].partition("_shape")[0]
@@ -302,5 +311,5 @@ def _homes(tag: str) -> tuple[str, ...]:
     return tuple(sorted(found)) if 0 < len(found) <= 3 else ()
 
 
-def _text(version: Version) -> str:
+def _version_text(version: Version) -> str:
     return ".".join(map(str, version))

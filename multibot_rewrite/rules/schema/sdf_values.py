@@ -39,13 +39,12 @@ class Misread(NamedTuple):
 
 @lru_cache(maxsize=4096)  # values come again
 def misread(type_: str, text: str) -> Misread | None:
-    """Return what is wrong with a text for that type; None where it is read as it is. Empty texts,
-    which mean the default, and types without a rule are always right."""
+    """Return what is wrong with a text for that type; None where right, empty or without a rule."""
     check = CHECKS.get(type_)
     return check(text) if check and text else None
 
 
-def _number(text: str, *, whole: bool = False) -> Misread | None:
+def _misread_number(text: str, *, whole: bool = False) -> Misread | None:
     if text.lower() in ("true", "false"):
         return None
     found = (_WHOLE if whole else _REAL).match(text)
@@ -66,22 +65,22 @@ def _is_too_large(digits: str, whole: bool) -> bool:
     return len(digits) > _DIGITS if whole else isinf(float(digits))
 
 
-def _unsigned_number(text: str) -> Misread | None:
+def _misread_unsigned(text: str) -> Misread | None:
     if text.startswith("-") and text != "-1":
         return Misread("is below 0, and is read as a number above 4 billion", False)
-    return _number(text, whole=True)
+    return _misread_number(text, whole=True)
 
 
-def _boolean(text: str) -> Misread | None:
+def _misread_boolean(text: str) -> Misread | None:
     return None if text.lower() in _TRUTHS else Misread("is neither true nor false", True)
 
 
-def _truth(text: str) -> Misread | None:
+def _misread_truth(text: str) -> Misread | None:
     known = text.lower() in (*_TRUTHS, "yes", "no")
     return None if known else Misread("is neither true nor false", False)
 
 
-def _numbers(text: str, *, count: int) -> Misread | None:
+def _misread_numbers(text: str, *, count: int) -> Misread | None:
     """Return what is wrong with a text of ``count`` numbers: a stream stops at the first other word."""
     read = 0
     for word in text.split():
@@ -101,7 +100,7 @@ def _misread_pose(text: str, *, size: int) -> Misread | None:
     return None if len(words) == size else Misread(f"has {len(words)} numbers of {size}", True)
 
 
-def _color(text: str) -> Misread | None:
+def _misread_color(text: str) -> Misread | None:
     found = [_REAL.match(word) for word in text.split()]
     if len(found) not in (3, 4) or not all(found):
         return Misread("is not three or four numbers", True)
@@ -110,16 +109,16 @@ def _color(text: str) -> Misread | None:
 
 
 CHECKS: dict[str, Callable[[str], Misread | None]] = {
-    **dict.fromkeys(("double", "float", "number"), _number),
-    **dict.fromkeys(("int", "integer"), partial(_number, whole=True)),
-    "unsigned_int": _unsigned_number,
-    **dict.fromkeys(("bool", "boolean"), _boolean),
-    "truth": _truth,
-    "vector2d": partial(_numbers, count=2),
-    **dict.fromkeys(("vector", "vector3"), partial(_numbers, count=3)),
+    **dict.fromkeys(("double", "float", "number"), _misread_number),
+    **dict.fromkeys(("int", "integer"), partial(_misread_number, whole=True)),
+    "unsigned_int": _misread_unsigned,
+    **dict.fromkeys(("bool", "boolean"), _misread_boolean),
+    "truth": _misread_truth,
+    "vector2d": partial(_misread_numbers, count=2),
+    **dict.fromkeys(("vector", "vector3"), partial(_misread_numbers, count=3)),
     "pose": partial(_misread_pose, size=6),
     QUATERNION: partial(_misread_pose, size=7),
-    "color": _color,
+    "color": _misread_color,
 }
 
 

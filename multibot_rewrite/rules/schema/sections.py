@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The schema as data: what parsers of URDF look for in each element, read from ``urdf.schema``; and
-what an attribute's value must be by its type there, and what is wrong with it.
+"""``urdf.schema`` as data: what parsers look for in each element and attribute, and faults of values.
 
 A version of URDF has a schema of its own: what came later is in ``later``, and not read. Many
 elements have the same attributes and children, so what a schema says about a combination is
-computed once and then looked up.
-"""
+computed once and then looked up."""
 
 import re
 from collections import Counter
@@ -41,10 +39,7 @@ class Kind(NamedTuple):
 
 
 class Child(NamedTuple):
-    """A child: its section, empty where its content is not checked, and how often it may come.
-
-    It is read from version ``since`` on.
-    """
+    """A child: its section, empty if not checked, how often it may come, the version ``since``."""
 
     section: str
     times: str
@@ -52,10 +47,7 @@ class Child(NamedTuple):
 
 
 class UrdfPart(NamedTuple):
-    """One element of the schema.
-
-    ``later`` are the attributes (``@name``) and children that only later versions read.
-    """
+    """One element of the schema; ``later``: attributes (``@name``) and children of later versions."""
 
     name: str
     attributes: Mapping[str, Kind]
@@ -196,7 +188,7 @@ def sections_below(version: Version, name: str, tags: tuple[str, ...]) -> tuple[
     if any(child.times == "required" and tag not in count for tag, child in known.items()):
         return None
     single = [tag for tag in count if known[tag].times != "many"]
-    slots = {_slot(tag, known[tag]) for tag in single}
+    slots = {_shared_slot(tag, known[tag]) for tag in single}
     if len(slots) < sum(count[tag] for tag in single):
         return None
     sections = {tag: known[tag].section for tag in count}
@@ -210,13 +202,13 @@ def sections_once(version: Version, name: str, tags: tuple[str, ...]) -> tuple[s
     found: list[str] = []
     for tag in tags:
         child = known.get(tag)
-        key = "" if child is None or child.times == "many" else _slot(tag, child)
+        key = "" if child is None or child.times == "many" else _shared_slot(tag, child)
         found.append(child.section if child is not None and key not in seen else "")
         seen |= {key} if key else set()
     return tuple(found)
 
 
-def _slot(tag: str, child: Child) -> str:
+def _shared_slot(tag: str, child: Child) -> str:
     """Return the slot of a child that is read once: all shapes share one."""
     return child.times if child.times == "either" else tag
 

@@ -33,7 +33,7 @@ def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Problem]:
     """Yield every fault of an SRDF; ``robot`` is that of its URDF, if it was found."""
     yield from _misspelt(root, _TOP, ("name", "version"))
     pinocchios = is_pinocchios(root)
-    for it, path in _elements(root):
+    for it, path in _read_elements(root):
         required, others, children = ELEMENTS[path]
         for attribute in ("name",) if path == "group_state" and pinocchios else required:
             if attribute not in it.attrib:
@@ -60,7 +60,7 @@ def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Problem]:
             yield fault("value", it, "value", message, hint)
 
 
-def _elements(root: _Element) -> Iterator[tuple[_Element, str]]:
+def _read_elements(root: _Element) -> Iterator[tuple[_Element, str]]:
     """Yield the elements that srdfdom reads, with their places in ``ELEMENTS``."""
     for top in root.iterchildren(*_TOP):
         tag = str(top.tag)

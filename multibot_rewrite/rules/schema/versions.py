@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The version of URDF that a description declares, read as urdfdom reads it, and who reads it in a
-release (``readers.schema``).
+"""The version of URDF that a description declares, and who reads it in a release.
 
-Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attribute it is 1.0.
-"""
+Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attribute it is 1.0. The
+readers are in ``readers.schema``."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -61,9 +60,7 @@ _SYSTEMS = ("ignition-gazebo", "gz-sim", "ign_ros2_control", "gz_ros2_control")
 
 
 def may_be_classics(root: _Element, release: str) -> bool:
-    """Return whether Gazebo Classic may read it. Its libsdformat 9 has no ranges and reads what it
-    can of poses and colours (src/Param.cc), and it goes on with a model that it has errors
-    about."""
+    """Return whether Gazebo Classic may read it: it is more lenient (libsdformat 9 src/Param.cc)."""
     version = read_version(root.get("version", "")) if root.tag == "sdf" else None
     if release != OF_OLD and not (version and version <= _NEWEST):
         return False

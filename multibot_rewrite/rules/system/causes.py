@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sentences for findings: the most likely cause, the known name that another one is but for a slip,
-and what to do about it.
-"""
+"""Sentences for findings: the likely cause, the name that was meant, and what to do about it."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -15,10 +13,9 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.planning.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rules.system.instead import COMMON
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import ACTION, End
+from multibot_rewrite.system.records import ACTION, COMPONENT, HOST, PLUGIN, SPAWNER, End
 
 # What a node does with a name, by the role of its endpoint.
 DOES, TO_DO = ({role: said.split(" | ")[at] for (role,), said in ROWS["roles"]} for at in (0, 1))
@@ -29,10 +26,7 @@ _PLACE = lazy_compile(r"(.+):(\d{1,9})")
 
 
 class Cause(NamedTuple):
-    """Why something is so, and what to do; file and line of a description where that is written.
-
-    The fields are those of ``Finding``.
-    """
+    """Why something is so, and what to do; the fields are those of ``Finding``."""
 
     hint: str
     file: str = ""
@@ -126,7 +120,7 @@ def how_to_remap(plan: Index, planned: End) -> str:
 
 def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
     """Return where a rule for a node goes, and how it is written there; ``what`` is what to call it."""
-    way, taker = _way(plan, node)
+    way, taker = _way_in(plan, node)
     what = what or rule
     if way == PLUGIN:
         tag = f"<remapping>{rule}</remapping> in <ros> of the plugin of {taker}"
@@ -134,9 +128,7 @@ def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
     if way == HOST:
         # In the process of another node a rule says whose it is.
         led = f"{node.rpartition('/')[2]}:{rule}"
-        return (
-            f"{what} to {taker}, whose process it is in: {_as_written(_way(plan, taker)[0], led)}"
-        )
+        return f"{what} to {taker}, whose process it is in: {_as_written(_way_in(plan, taker)[0], led)}"
     if way == SPAWNER:
         return f"{what} to its spawner: {_as_written(way, rule)}"
     if way == COMPONENT:
@@ -144,7 +136,7 @@ def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
     return f"{what} with {_as_written(way, rule)}"
 
 
-def _way(plan: Index, node: str) -> tuple[str, str]:
+def _way_in(plan: Index, node: str) -> tuple[str, str]:
     """Return how a planned node gets its rules, and which one takes them for it."""
     planned = plan.node.get(node)
     return (planned.way, planned.taker) if planned else ("", "")
@@ -172,7 +164,7 @@ def why_other_name(plan: Index, node: str, match: str) -> Cause:
     if plugin:
         missing = "namespace" if namespaced else "separate name for each robot"
         return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
-    way, taker = _way(plan, node)
+    way, taker = _way_in(plan, node)
     if way == HOST:
         return Cause(f"{match} is running in the process of {taker}: start {taker} as planned")
     missing, rule = "name", Remap(match, "__node", node.rpartition("/")[2])
@@ -212,9 +204,7 @@ NONE = Spelled(())
 def alike(
     name: str, known: Spelled, type_: str, may_be: Callable[[str], bool] = lambda _: True
 ) -> str:
-    """Return the known name that is the same but for case, dashes or a misspelled word, among those
-    that ``may_be`` allows; empty for none. Names that differ in their numbers alone are two
-    things."""
+    """Return a known name that differs in case, dashes or one misspelled word only; empty for none."""
     same = known.by_letters.get(letters(name), ())
     folded = next((it for it in same if it != name and may_be(it)), "")
     if folded or type_.startswith(COMMON):
@@ -239,12 +229,12 @@ def _with_other_word(parts: list[str], at: int, known: Spelled) -> Iterator[tupl
 
 
 def _other_parts(parts: list[str], at: int) -> _Rest:
+    """Return the parts of a name but that at one place, which is kept."""
     return at, *parts[:at], *parts[at + 1 :]
 
 
 def _is_slip(one: str, other: str) -> bool:
-    """Return whether one name is the other one mistyped: each part between underscores is equal or
-    nearly so. `cmd_vel_out` is not `cmd_vel_ui` mistyped, nor `lidar_l` `lidar_r`."""
+    """Return whether each part between underscores is nearly equal: not cmd_vel_out and cmd_vel_ui."""
     parts = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
     return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A system compared with an earlier snapshot of it: what is new, gone or other in ends, transforms,
-frames of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
+"""A system compared with an earlier snapshot: ends, transforms, frames of messages, parameters."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
@@ -53,8 +52,7 @@ def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def untold(found: Iterable[Finding]) -> list[Finding]:
-    """Return the findings without changes that another one explains, of a name, a node or a robot.
-    A warning about the names of an error becomes an error."""
+    """Return the findings without changes that others explain, at the level of errors about them."""
     every = [*found]
     errors = {
         name
@@ -91,7 +89,7 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
             if (was := _type_and_qos(old[key])) != (now := _type_and_qos(end)) and not tool:
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
-        elif heeded := _heeded(seen, end):
+        elif heeded := _obeyed_by(seen, end):
             yield _Change(end.node, f"{did_not}; {heeded}", (end.name,), ERROR)
         elif end.role == PUBLISHES and (user := _user(seen, end)):
             yield _Change(end.node, f"{did_not}; {user} reads it", (end.name,))
@@ -104,9 +102,9 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
         names = tuple(dict(pairs))
         what = f"no longer gives {shorten(names)}, which {pairs[0][1]} uses"
         yield _Change(node, what, names, ERROR)
-    yield from _transforms(before, seen)
-    yield from _frames(before, seen)
-    yield from _parameters(before, seen)
+    yield from _changed_transforms(before, seen)
+    yield from _changed_frames(before, seen)
+    yield from _changed_parameters(before, seen)
 
 
 def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
@@ -122,10 +120,11 @@ def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
 
 
 def _type_and_qos(end: End) -> str:
+    """Return type and unusual QoS of an end as a text."""
     return " ".join((end.type, *qos_words(end)))
 
 
-def _heeded(seen: Index, end: End) -> str:
+def _obeyed_by(seen: Index, end: End) -> str:
     """Return who obeys a new sender, or takes its data for those of another; empty for nobody."""
     ends = seen.ends_at(end.kind, end.name)
     readers, others = (
@@ -141,8 +140,7 @@ def _heeded(seen: Index, end: End) -> str:
 
 
 def _lost_by(seen: Index, end: End) -> str:
-    """Return who still uses what a tool gave, such as a simulator's bridge, and nothing gives now;
-    empty for nobody, and for what a person may send."""
+    """Return who still uses what a tool gave, such as a bridge, and nothing gives now; or ""."""
     ends = seen.ends_at(end.kind, end.name)
     by_hand = is_from_outside(end.name) or end.name in {*seen.orders, *EVERYBODYS}
     return "" if by_hand or ends.publishers or ends.servers else _user(seen, end)
@@ -163,9 +161,9 @@ def _sender(seen: Index, edge: Edge) -> str:
     return only(own) or only(edge.publishers)
 
 
-def _transforms(before: System, seen: Index) -> Iterator[_Change]:
+def _changed_transforms(before: System, seen: Index) -> Iterator[_Change]:
     """Yield changed transforms, if tf was read both times; not those of a node that is gone."""
-    old, new = _edges(before.edges), _edges(seen.system.edges)
+    old, new = _edges_by_place(before.edges), _edges_by_place(seen.system.edges)
     if not (old and new):
         return
     above = {(child, topic): parent for parent, child, topic in new}
@@ -198,7 +196,7 @@ def _transforms(before: System, seen: Index) -> Iterator[_Change]:
         )
 
 
-def _edges(edges: Iterable[Edge]) -> Mapping[_Place, Edge]:
+def _edges_by_place(edges: Iterable[Edge]) -> Mapping[_Place, Edge]:
     return {
         (it.parent.removeprefix("/"), it.child.removeprefix("/"), it.topic): it
         for it in edges
@@ -212,9 +210,9 @@ def _is_moved(old: Edge, new: Edge) -> bool:
     return any(abs(it - was) > _SAME for was, it in both)
 
 
-def _frames(before: System, seen: Index) -> Iterator[_Change]:
+def _changed_frames(before: System, seen: Index) -> Iterator[_Change]:
     """Yield changes of what messages name, for topics with messages both times."""
-    old, new = (sets_by_key(_named(it)) for it in (before, seen.system))
+    old, new = (sets_by_key(_names_in_messages(it)) for it in (before, seen.system))
     for topic, names in new.items():
         if topic in old and names != old[topic]:
             both = (old[topic] - names, names - old[topic])
@@ -222,14 +220,14 @@ def _frames(before: System, seen: Index) -> Iterator[_Change]:
             yield _Change("", f"messages on {topic} are of {now}, and were of {was}", (topic,))
 
 
-def _named(system: System) -> Iterator[tuple[str, str]]:
+def _names_in_messages(system: System) -> Iterator[tuple[str, str]]:
     """Yield the topics with the frames and joints that their messages name, and descriptions."""
     for it in system.heard:
         yield it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints)
     yield from ((it.topic, name) for it in system.descriptions for name in (*it.links, *it.joints))
 
 
-def _parameters(before: System, seen: Index) -> Iterator[_Change]:
+def _changed_parameters(before: System, seen: Index) -> Iterator[_Change]:
     was = {(it.node, it.name): it.value for it in before.parameters}
     changed: dict[str, list[str]] = defaultdict(list)
     for it in seen.system.parameters:

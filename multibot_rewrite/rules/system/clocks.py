@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of time: simulated time without a clock, two clocks, clocks mixed in one robot; data that
-is stamped with another time than now.
-"""
+"""Dangers of time: no clock, two clocks, mixed ones, and stamps of another time than now."""
 
 from __future__ import annotations
 
@@ -41,7 +39,7 @@ _SENT = (TOPIC, PUBLISHES, CLOCK)
 def no_clock(seen: Index) -> Iterator[Finding]:
     """Yield a finding for each robot on simulated time without a clock."""
     by_robot = _on_simulated_time(seen)
-    if _clocks(seen):
+    if _clock_senders(seen):
         return
     for robot, nodes in by_robot.items():
         who = shorten(nodes)
@@ -63,7 +61,7 @@ def no_clock(seen: Index) -> Iterator[Finding]:
         )
 
 
-def _clocks(seen: Index) -> tuple[str, ...]:
+def _clock_senders(seen: Index) -> tuple[str, ...]:
     return nodes_of(seen.ends_at(TOPIC, CLOCK).publishers)
 
 
@@ -77,8 +75,8 @@ def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
 @system_rule("MG502", "two-clocks", ERROR)
 def two_clocks(seen: Index) -> Iterator[Finding]:
     """Report several clocks on a topic, also of two nodes with one name."""
-    nodes = _clocks(seen)
-    times = {node: _times(seen, node) for node in nodes}
+    nodes = _clock_senders(seen)
+    times = {node: _clock_nodes(seen, node) for node in nodes}
     if sum(max(1, count) for count in times.values()) > 1:
         who = and_then(nodes) if len(nodes) > 1 else f"{times[nodes[0]]} nodes {nodes[0]}"
         cause = Cause("a clock bridge for each robot, or two simulators: keep one")
@@ -92,7 +90,7 @@ def two_clocks(seen: Index) -> Iterator[Finding]:
         yield two_clocks.finding(message, **cause._asdict(), node=nodes[0], names=(CLOCK,))
 
 
-def _times(seen: Index, node: str) -> int:
+def _clock_nodes(seen: Index, node: str) -> int:
     """Return how many nodes of a name publish the clock; all of them if their processes are unknown."""
     processes = _processes(seen)[node]
     if "" in processes or len(processes) < seen.nodes.get(node, 0):
@@ -110,7 +108,10 @@ def _processes(seen: Index) -> Mapping[str, Set[str]]:
 @system_rule("MG504", "clock-stands-or-goes-back", ERROR, absence=True)
 def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
     """Report a clock as it was heard; two clocks are another finding."""
-    clocks, nodes = _clocks(seen), [it for own in _on_simulated_time(seen).values() for it in own]
+    clocks, nodes = (
+        _clock_senders(seen),
+        [it for own in _on_simulated_time(seen).values() for it in own],
+    )
     for it in (one for one in seen.system.heard if one.topic == CLOCK and len(clocks) == 1):
         about = {"node": clocks[0], "names": (CLOCK,)}
         if it.back:
@@ -132,7 +133,7 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
     """Yield the findings of MG503."""
     yield from _not_as_planned(seen)
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
-    if not simulated or not _clocks(seen):
+    if not simulated or not _clock_senders(seen):
         return
     untold = without_clock(seen.system)
     asked = [it for it in seen.nodes if not is_viewer(it) and it not in untold]
@@ -208,7 +209,7 @@ def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
         type_, senders = sent_on(seen, topic)
         played = any(last_word(it).startswith(words.PLAYER) for it in senders)
         measured = type_.startswith(_MEASURED)
-        if senders and measured and not played and (what := _wrong(age, clock)):
+        if senders and measured and not played and (what := _time_fault(age, clock)):
             found[senders, what].append(topic)
     yield from _old_transforms(seen, clock)
     for (senders, what), topics in found.items():
@@ -220,8 +221,7 @@ def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
 
 
 def _old_transforms(seen: Index, clock: bool) -> Iterator[Finding]:
-    """Report old transforms. Localizers stamp theirs some time ahead (amcl transform_tolerance).
-    Nothing shows which of the nodes on a tf topic sent a transform: those of its robot may have."""
+    """Report old transforms; localizers stamp theirs ahead (amcl transform_tolerance)."""
     found: dict[tuple[str, str], list[Edge]] = defaultdict(list)
     for tree in seen.trees:
         for it in tree.edges:
@@ -229,7 +229,7 @@ def _old_transforms(seen: Index, clock: bool) -> Iterator[Finding]:
             # Many write 0 and are only asked for the latest.
             if it.static or it.several or played or isinf(it.age) or -_FAR_AHEAD < it.age < 0:
                 continue
-            if what := _wrong(it.age, clock):
+            if what := _time_fault(it.age, clock):
                 found[tree.topic, what].append(it)
     for (topic, what), edges in found.items():
         listed = shorten([f"{it.parent} -> {it.child}" for it in edges])
@@ -257,7 +257,7 @@ def _other_clock(senders: Sequence[str], what: str) -> Cause:
     return Cause(f"see the clock of {shorten(senders) or 'its sender'}, or that of its machine")
 
 
-def _wrong(age: float, clock: bool) -> str:
+def _time_fault(age: float, clock: bool) -> str:
     """Return what is wrong with a message of this age; with simulated time, the machine's is wrong."""
     if isinf(age):
         return _ZERO

@@ -71,9 +71,7 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
-    """Report commands without a reader. If the other name has no sender, its reader is reported,
-    except for the drive past a twist_mux, which chooses for the drive. What RViz offers is a
-    note."""
+    """Report commands without a reader, unless the reader of a like name is reported."""
     obeyed, plainly = defaultdict(list), defaultdict(list)
     unread: dict[str, Ends] = {}
     for name, it in seen.orders.items():
@@ -89,9 +87,9 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     for name, ends in unread.items():
         same = obeyed[ends.type]
         spelled[ends.type] = spelled.get(ends.type) or Spelled(same)
-        robots = _of_whom(seen, ends, plainly[ends.type, name])
-        near = next(iter(robots), "") or _alike(seen, ends, spelled[ends.type])
-        meant = near or _of_a_mux(seen, ends) or _of_a_person(seen, ends, same)
+        robots = _meant_commands(seen, ends, plainly[ends.type, name])
+        near = next(iter(robots), "") or _like_command(seen, ends, spelled[ends.type])
+        meant = near or _topic_for_mux(seen, ends) or _command_by_hand(seen, ends, same)
         if meant:
             yield _unread_command(seen, ends, meant, len(robots))
         elif absent := nobody_in(seen, name, same):
@@ -102,9 +100,8 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def _of_whom(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[str]:
-    """Return the obeyed names of robots that a sender may mean, of those with the sender's topic as
-    their own; if it is of one robot, that robot's alone."""
+def _meant_commands(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[str]:
+    """Return the obeyed names that a sender may mean: its robot's own; of no robot, those of all."""
     mine = only(robots_of(seen, nodes_of(ends.publishers)))
     if not mine:
         return names
@@ -112,26 +109,25 @@ def _of_whom(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[str]:
     return [own.name] if own and own.name != ends.name and _is_obeyed(own) else []
 
 
-def _alike(seen: Index, ends: Ends, known: Spelled) -> str:
+def _like_command(seen: Index, ends: Ends, known: Spelled) -> str:
     """Return the obeyed name that is nearly this one, not of another robot than the sender's."""
     mine = only(robots_of(seen, nodes_of(ends.publishers)))
     return alike(ends.name, known, ends.type, lambda it: not mine or seen.robot(it) in ("", mine))
 
 
-def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """Return the topic that a topic of twist_mux or Nav2 without readers should be: the one that
-    the robot's drive reads; for Nav2 otherwise an input of the robot's mux without senders. Or ""."""
-    robot, kinds = seen.robot(ends.name), _kinds(ends)
+def _topic_for_mux(seen: Index, ends: Ends) -> str:
+    """Return what a mux or Nav2 should publish instead: what the drive reads, or a mux input; or ""."""
+    robot, kinds = seen.robot(ends.name), _plain_types(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))
     of_nav2 = kinds == {_VELOCITY} and any(team(it) != it for it in nodes_of(ends.publishers))
     if not (chosen or of_nav2):
         return ""
-    senders, relays, moving = _moving(seen)
+    senders, relays, moving = _velocity_ends(seen)
     drives = [
         it
         for it in moving.get(robot, ())
-        if kinds & _kinds(it)
+        if kinds & _plain_types(it)
         if not senders.issuperset(nodes_of(at_work(it.subscribers)))
         # What a drive gets by way of another node may be meant, and what is chosen for it as well.
         if relays.isdisjoint(nodes_of(it.publishers))
@@ -144,13 +140,13 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
     ]
     if drives or chosen:
         return min(drives, key=lambda it: bool(it.publishers)).name if drives else ""
-    idle = (it for it in moving.get(robot, ()) if kinds & _kinds(it) and not it.publishers)
+    idle = (it for it in moving.get(robot, ()) if kinds & _plain_types(it) and not it.publishers)
     inputs = (it.name for it in idle if any(map(chooses, nodes_of(it.subscribers))))
     return nearest(ends.name, [it for it in inputs if not _BY_HAND.search(it)], alike=0.0)
 
 
 @once
-def _moving(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends]]]:
+def _velocity_ends(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends]]]:
     """Return who sends velocities, and so is no drive; who also reads them; each robot's velocities."""
     moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
     senders = {it.node for ends in moving for it in ends.publishers}
@@ -161,19 +157,19 @@ def _moving(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends
 
 
 @once
-def _goals(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
+def _obeyed_commands(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     """Return the obeyed commands by type and robot."""
     return lists_by_key(
         ((it.type, seen.robot(it.name)), it.name) for it in seen.orders.values() if _is_obeyed(it)
     )
 
 
-def _kinds(ends: Ends) -> set[str]:
+def _plain_types(ends: Ends) -> set[str]:
     """Return its types; stamped or not is a switch of the sender."""
     return {it.removesuffix(STAMPED) for it in ends.type.split(" | ")}
 
 
-def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
+def _command_by_hand(seen: Index, ends: Ends, same: Sequence[str]) -> str:
     """Return the one goal or velocity that the robot obeys, where a person sends another one."""
     robot = seen.robot(ends.name)
     if words.moves(seen.plain(ends.name), ends.type):
@@ -184,7 +180,7 @@ def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
         readers = {it: at_work(seen.by_name[TOPIC, it].subscribers) for it in mine}
         own = [it for it in mine if any(team(one.node) == one.node for one in readers[it])]
     else:
-        own = [*_goals(seen).get((ends.type, robot), ())]
+        own = [*_obeyed_commands(seen).get((ends.type, robot), ())]
     return own[0] if len(own) == 1 else ""
 
 
@@ -228,13 +224,13 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
     """Report also tools: a joystick of one robot is not for another."""
     for (kind, name), ends in seen.by_name.items():
         owner = seen.robot(name)
-        crossing = _of_others(seen, owner, (*ends.publishers, *ends.clients)) if owner else ()
+        crossing = _ends_of_others(seen, owner, (*ends.publishers, *ends.clients)) if owner else ()
         if not crossing:
             continue
         order = kind == TOPIC and (name in seen.orders or _is_waited_for(seen, ends))
         senders = ends.publishers if order else ends.clients
         served = kind == TOPIC or ends.servers
-        for node in nodes_of(_of_others(seen, owner, senders)) if served else ():
+        for node in nodes_of(_ends_of_others(seen, owner, senders)) if served else ():
             robot = seen.robot(node)
             # Who has both coordinates the two; a service that its own robot has not is for others.
             own = seen.of_robot(robot, kind, seen.plain(name))
@@ -252,14 +248,13 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
+def _ends_of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
     """Return the ends of nodes of other robots."""
     return [it for it in ends if seen.robot(it.node) not in ("", owner)]
 
 
 def _is_waited_for(seen: Index, ends: Ends) -> bool:
-    """Return whether the robot of a sender has the same topic, with readers and no sender. As an
-    emergency stop with the other robot's name."""
+    """Return whether the sender's robot has readers and no sender of the same topic."""
     plain = seen.plain(ends.name)
     if ends.kind != TOPIC or ends.name in EVERYBODYS or ends.type == TF:
         return False
@@ -269,8 +264,7 @@ def _is_waited_for(seen: Index, ends: Ends) -> bool:
 
 @system_rule("MG312", "several-command-senders", WARNING, meant=(PUBLISHES,))
 def several_command_senders(seen: Index) -> Iterator[Finding]:
-    """Yield command topics with several senders. Nodes of Nav2, and those of MoveIt, send in turn
-    and are one sender. Past a node that chooses or limits commands it is an error."""
+    """Yield command topics with several senders; nodes of Nav2 (or MoveIt) count as one."""
     for ends in seen.orders.values():
         if not words.moves(seen.plain(ends.name), ends.type):
             continue

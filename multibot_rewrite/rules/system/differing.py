@@ -32,7 +32,7 @@ _SAME = 1e-3
 _TWO = 2
 
 
-class _Told(NamedTuple):
+class _Value(NamedTuple):
     """A value of one robot: where, its name, the value, and the same in the words of all robots."""
 
     node: str
@@ -42,16 +42,16 @@ class _Told(NamedTuple):
 
 
 # What it is of, in the words of all robots -> robot -> its value.
-_Values = Mapping[tuple[str, ...], Mapping[str, _Told]]
+_Values = Mapping[tuple[str, ...], Mapping[str, _Value]]
 
 
 @system_rule("MG328", "differs-from-its-likes", WARNING)
 def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
     """Report what one robot has otherwise than those built alike, once a node; so its transforms."""
     for likes in alike(nodes_of_each(seen)):
-        for values in (_parameters(seen), _types(seen), _qualities(seen)):
-            yield from _differences(_odd(values, likes), len(likes) == _TWO)
-        yield from _moved_parts(seen, _odd(_parts(seen), likes))
+        for values in (_parameter_values(seen), _type_values(seen), _qos_values(seen)):
+            yield from _differences(_odd_values(values, likes), len(likes) == _TWO)
+        yield from _moved_parts(seen, _odd_values(_part_values(seen), likes))
         yield from _lost_parts(seen, likes)
 
 
@@ -82,7 +82,7 @@ def unexplained(found: Sequence[Finding]) -> list[Finding]:
     ]
 
 
-def _odd(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Told, _Told]]:
+def _odd_values(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Value, _Value]]:
     """Yield robot, its value and that of the others, where one differs from all the others."""
     for own in values.values():
         there = {it: own[it] for it in likes if it in own}
@@ -95,9 +95,9 @@ def _odd(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Told, _T
             yield robot, there[robot], next(it for it in there.values() if it.plain == usual)
 
 
-def _differences(odd: Iterator[tuple[str, _Told, _Told]], of_two: bool) -> Iterator[Finding]:
+def _differences(odd: Iterator[tuple[str, _Value, _Value]], of_two: bool) -> Iterator[Finding]:
     """Report differences; of two robots for both: either may be the one that is wrong."""
-    by_node: dict[tuple[str, str, str], list[tuple[_Told, _Told]]] = defaultdict(list)
+    by_node: dict[tuple[str, str, str], list[tuple[_Value, _Value]]] = defaultdict(list)
     for robot, own, other in odd:
         by_node[robot, own.node, other.node].append((own, other))
     for (robot, node, like), pairs in by_node.items():
@@ -113,39 +113,39 @@ def _differences(odd: Iterator[tuple[str, _Told, _Told]], of_two: bool) -> Itera
 
 
 @once
-def _parameters(seen: Index) -> _Values:
-    found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
+def _parameter_values(seen: Index) -> _Values:
+    found: dict[tuple[str, ...], dict[str, _Value]] = defaultdict(dict)
     for it in seen.system.parameters:
         robot = seen.robot(it.node)
         if robot and it.name != SIM_TIME and not _OWN.search(it.name):
-            told = _Told(it.node, it.name, it.value, it.value.replace(robot, "*"))
+            told = _Value(it.node, it.name, it.value, it.value.replace(robot, "*"))
             found[seen.plain(it.node), it.name][robot] = told
     return found
 
 
 @once
-def _types(seen: Index) -> _Values:
+def _type_values(seen: Index) -> _Values:
     """Return types of topics whose nodes agree on one; otherwise that is another finding."""
-    found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
+    found: dict[tuple[str, ...], dict[str, _Value]] = defaultdict(dict)
     for it in seen.topics:
         robot = seen.robot(it.name) if it.type else ""
         ends = (*it.publishers, *it.subscribers) if robot else ()
         if ends and all(end.type == it.type for end in ends):
-            found[(seen.plain(it.name),)][robot] = _Told(ends[0].node, it.name, it.type, it.type)
+            found[(seen.plain(it.name),)][robot] = _Value(ends[0].node, it.name, it.type, it.type)
     return found
 
 
 @once
-def _qualities(seen: Index) -> _Values:
+def _qos_values(seen: Index) -> _Values:
     """Return QoS settings; none with Zenoh, which connects any two."""
-    found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
+    found: dict[tuple[str, ...], dict[str, _Value]] = defaultdict(dict)
     told = seen.system.environment.rmw != ZENOH and any(it.qos for it in seen.system.ends)
     for robot, made in made_of(seen).items() if told else ():
         for key, end in made.ends.items():
             if end.qos:
                 words = " ".join(qos_words(end))
                 about = (*key, "qos")
-                found[about][robot] = _Told(end.node, end.name, words, words)
+                found[about][robot] = _Value(end.node, end.name, words, words)
     return found
 
 
@@ -159,23 +159,23 @@ def _edges_of(seen: Index) -> Iterator[tuple[str, Edge]]:
 
 
 @once
-def _parts(seen: Index) -> _Values:
+def _part_values(seen: Index) -> _Values:
     """Return parents and places of parts."""
-    found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
+    found: dict[tuple[str, ...], dict[str, _Value]] = defaultdict(dict)
     for robot, it in _edges_of(seen):
         child, parent = seen.plain_frame(it.child), seen.plain_frame(it.parent)
         # One in another form than the robot's frames has no words in common with the others'.
         if parent != it.parent or not seen.frame_robot(it.parent):
-            told = _Told(it.topic, it.child, f"below {it.parent}", parent)
+            told = _Value(it.topic, it.child, f"below {it.parent}", parent)
             found[child, "parent"][robot] = told
         if it.transform:
             at = " ".join(f"{number:.3g}" for number in it.transform[:3])
             place = str([round(number / _SAME) for number in it.transform])
-            found[child, "place"][robot] = _Told(it.topic, it.child, f"at {at}", place)
+            found[child, "place"][robot] = _Value(it.topic, it.child, f"at {at}", place)
     return found
 
 
-def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterator[Finding]:
+def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Value, _Value]]) -> Iterator[Finding]:
     by_robot = lists_by_key((robot, (own, other)) for robot, own, other in odd)
     for robot, pairs in by_robot.items():
         listed = (f"{own.name} {own.value}, not {other.value}" for own, other in pairs)
@@ -198,7 +198,7 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
         # Under other names all are lost, which is another finding; of two robots one may have a part
         # more. What is there is to hang on the same frame.
         if len(likes) == _TWO or len(lost) >= len(frames[robot]):
-            lost = [it for it in lost if (robot, it) in _parents(seen)]
+            lost = [it for it in lost if (robot, it) in _frames_with_children(seen)]
         if lost:
             like = next(it for it in likes if it != robot)
             yield differs_from_its_likes.finding(
@@ -209,7 +209,7 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
 
 
 @once
-def _parents(seen: Index) -> Set[tuple[str, str]]:
+def _frames_with_children(seen: Index) -> Set[tuple[str, str]]:
     """Return the frames that have something below them, by robot and without its name."""
     every = ((it.parent, it.topic) for tree in seen.trees for it in tree.edges)
     return {(seen.frame_robot(it) or seen.robot(on), seen.plain_frame(it)) for it, on in every}

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What nodes wait for in vain while their robot has it under another name: by what it is, not by
-how it is written."""
+"""What nodes wait for in vain while their robot has it under another name: by what it is."""
 
 from __future__ import annotations
 
@@ -35,8 +34,7 @@ _TRIGGERS = "std_srvs/"
 
 
 def sent_instead(seen: Index, end: End) -> Ends | None:
-    """Return the topic or service of its robot that a node may have meant by an end; None for none,
-    and for an end that only may exist."""
+    """Return the robot's topic or service that a node may have meant by an end; None for none."""
     if end.sure != RUNS:
         return None
     if known := meant(seen, end):
@@ -50,12 +48,11 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
         return given.get(nearest(end.name, given, alike=0.0)) or next(iter(given.values()), None)
     if end.role != SUBSCRIBES or chooses(end.node):
         return None
-    return _data(seen, end) or _orphan(seen, end)
+    return _topic_with_data(seen, end) or _unread_topic(seen, end)
 
 
-def _orphan(seen: Index, end: End) -> Ends | None:
-    """Return a topic of the same type that no node reads, if there is one such topic or one with a
-    word in common. Plain types and topics that a person may send always need a common word."""
+def _unread_topic(seen: Index, end: End) -> Ends | None:
+    """Return the robot's one unread topic of the end's type, or with a word in common; or None."""
     robot = seen.robot(end.name)
     # Does its node read the same of another robot, from which it comes?
     merges = _has_another(seen, end) and not any(
@@ -74,27 +71,27 @@ def _orphan(seen: Index, end: End) -> Ends | None:
     ]
     begins = [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
     if merges:
-        return _only(begins)
+        return _only_one(begins)
     akin = [it for it in given if _telling_words(seen, it.name) & _telling_words(seen, end.name)]
     akin = akin or begins
     plain = end.type.startswith(_PLAIN_DATA) or end.name.startswith(f"{end.node}/")
     plain = plain or is_from_outside(end.name)
-    return _only(akin) or (None if plain else _only(given))
+    return _only_one(akin) or (None if plain else _only_one(given))
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
-    """Return whether it is made from the missing topic, as slam_toolbox republishes the scan that
-    it reads, or from others of its type, as an image is rectified from a debayered one."""
+    """Return whether a topic is made from the missing one, or from others of its type."""
     readers = _readers(seen)(end.name, end.type)
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
 
 
 @once
 def _readers(seen: Index) -> Callable[[str, str], frozenset[str]]:
-    return cache(partial(_waiting, seen))
+    """Return a function that returns the nodes which read a topic, directly or not."""
+    return cache(partial(_readers_of, seen))
 
 
-def _waiting(seen: Index, name: str, type_: str) -> frozenset[str]:
+def _readers_of(seen: Index, name: str, type_: str) -> frozenset[str]:
     """Return the nodes that read a topic, and those that read what these make of it."""
     readers: set[str] = set()
     names = [name]
@@ -135,7 +132,7 @@ def _telling_words(seen: Index, name: str) -> set[str]:
     return {it for it in re.split(r"[/_]", seen.plain(name)) if len(it) >= _SAYING} - _OF_ALL
 
 
-def _data(seen: Index, end: End) -> Ends | None:
+def _topic_with_data(seen: Index, end: End) -> Ends | None:
     """Return the topic with an end's data: an unread one; for sensor data also one that others read."""
     # Such as a footprint, which a person may send.
     by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
@@ -158,16 +155,16 @@ def _data(seen: Index, end: End) -> Ends | None:
     akin = [it for it in unread if _telling_words(seen, it.name) & _telling_words(seen, end.name)]
     unread = akin if len(akin) == 1 else unread
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
-    return _only(given if several and unread else unread or ([] if several else same))
+    return _only_one(given if several and unread else unread or ([] if several else same))
 
 
 def _has_another(seen: Index, end: End) -> bool:
     """Return whether a node reads another topic of that type which is sent."""
-    return bool(_read(seen).get((end.node, end.kind, end.type), set()) - {end.name})
+    return bool(_names_read(seen).get((end.node, end.kind, end.type), set()) - {end.name})
 
 
 @once
-def _read(seen: Index) -> Mapping[tuple[str, str, str], Set[str]]:
+def _names_read(seen: Index) -> Mapping[tuple[str, str, str], Set[str]]:
     """Return the names of a kind and type that a node reads and somebody sends."""
     found: dict[tuple[str, str, str], set[str]] = defaultdict(set)
     for ends in seen.by_name.values():
@@ -176,14 +173,13 @@ def _read(seen: Index) -> Mapping[tuple[str, str, str], Set[str]]:
     return found
 
 
-def _only(given: Sequence[Ends]) -> Ends | None:
+def _only_one(given: Sequence[Ends]) -> Ends | None:
     """Return the only item; None unless there is just one."""
     return given[0] if len(given) == 1 else None
 
 
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
-    """Return whether another node of its robot sends it, and its own does not read it yet. Displays
-    of Nav2 and MoveIt are no sensors; an unread twist_mux has its own finding."""
+    """Return whether another node of the robot sends a topic that this node does not read yet."""
     if any(it.node == end.node for it in ends.subscribers) or _waits_itself(seen, ends, end):
         return False
     robot = seen.robot(end.node) or seen.robot(end.name)
@@ -208,8 +204,7 @@ def _sent(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
 
 
 def _served(seen: Index, end: End) -> Iterator[Ends]:
-    """Yield services and actions of its type in its robot that nobody calls; if many have the type,
-    those with its last word."""
+    """Yield the robot's services and actions of the end's type that nobody calls."""
     robot, last = seen.robot(end.node) or seen.robot(end.name), last_word(end.name)
     for it in _servers(seen).get((end.kind, end.type, robot), ()):
         own = any(one.node != end.node and seen.robot(one.node) == robot for one in it.servers)
@@ -233,7 +228,7 @@ def _servers(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
 
 
 @once
-def _nobodys(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
+def _served_by_nobody(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
     """Return what is served under a name without a robot, by kind, type and last word."""
     found: dict[tuple[str, str, str], list[Ends]] = defaultdict(list)
     for it in seen.by_name.values():
@@ -243,9 +238,8 @@ def _nobodys(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
 
 
 def in_other_namespace(seen: Index, end: End) -> str:
-    """Return the service without a robot's name that a client misses by a namespace too many, or by
-    one too few; empty for none."""
-    known = _nobodys(seen).get((end.kind, end.type, last_word(end.name)), ())
+    """Return the service that a client misses by a namespace too many or too few; empty for none."""
+    known = _served_by_nobody(seen).get((end.kind, end.type, last_word(end.name)), ())
     for it in () if seen.robot(end.name) else known:
         short, long = sorted((it.name, end.name), key=len)
         space = long.removesuffix(short)
@@ -270,8 +264,7 @@ def is_needed(end: End) -> bool:
 
 
 def meant(seen: Index, end: End) -> Ends | None:
-    """Return what was meant by an end: something sent with the same type and the same last word or
-    the likest name. It is None if the end's name in the code is unknown."""
+    """Return what was meant by an end: its type, and its last word or the likest name; or None."""
     mux = end.role == SUBSCRIBES and chooses(end.node)
     if not (is_needed(end) or (mux and end.code_name)) or not end.type:
         return None
@@ -298,8 +291,7 @@ def meant(seen: Index, end: End) -> Ends | None:
 
 @once
 def _sent_or_served(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]:
-    """Return what is sent or served, with its position, by kind, type and sending robot: a search
-    for each end would take the square of the robots."""
+    """Return what is sent or served, with its position, by kind, type and sending robot."""
     found: dict[tuple[str, str, str], list[tuple[int, Ends]]] = defaultdict(list)
     for at, it in enumerate(seen.by_name.values()):
         for robot in {seen.robot(one.node) for one in _givers(it)}:
@@ -308,8 +300,7 @@ def _sent_or_served(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int
 
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:
-    """Return whether another node, of its robot or of none, sends it, and it is not read already.
-    Displays of Nav2 and MoveIt are no sensors. A node of none sends for the robot in the name."""
+    """Return whether another node, of the robot or of none, sends what this node does not read yet."""
     if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
         return False
     own, twin = seen.robot(end.node), last_word(end.node)

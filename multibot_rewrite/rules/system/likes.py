@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Equal robots compared: the nodes and ends that one lacks and its likes have, and what comes from
-one and not, or less often, from another.
-"""
+"""Equal robots compared: the nodes, ends and messages that one lacks and its likes have."""
 
 import re
 from collections import Counter, defaultdict
@@ -89,7 +87,7 @@ def _lost_descriptions(seen: Index) -> Iterator[Finding]:
 @once
 def made_of(seen: Index) -> Mapping[str, MadeOf]:
     """Return the nodes and their endpoints of each robot."""
-    return {robot: MadeOf(own, _uses(seen, own)) for robot, own in nodes_of_each(seen).items()}
+    return {robot: MadeOf(own, _own_ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
 
 
 @once
@@ -104,7 +102,8 @@ def nodes_of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
     return own
 
 
-def _uses(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
+def _own_ends(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
+    """Return the ends of some nodes, without those of every node."""
     ends = {}
     by_node, plain_of = seen.by_node, seen.plain
     for plain, name in nodes.items():
@@ -128,6 +127,7 @@ def alike(nodes: Mapping[str, Mapping[str, str]]) -> Iterator[Sequence[str]]:
 
 
 def _are_alike(one: Set[str], other: Set[str]) -> bool:
+    """Return whether two sets of nodes share more than half, and enough, of their names."""
     same = len(one & other)
     return same >= _ENOUGH and 2 * same > len(one) + len(other) - same
 
@@ -138,7 +138,7 @@ def _lost_nodes(
     """Report all nodes of one robot in one finding."""
     like, made = next(it for it in likes if it != robot), made_of(seen)
     keys = [key for key in made[like].ends if key[0] in lost]
-    own = _waiting(seen, robot, keys)
+    own = _missed_names(seen, robot, keys)
     theirs = sorted(made[like].nodes[it] for it in lost)
     if not (own or len(likes) > 2 or any(seen.publishes_description(it) for it in theirs)):
         return
@@ -157,7 +157,7 @@ def _lost_ends(
     like, made = next(it for it in likes if it != robot), made_of(seen)
     by_node = lists_by_key((key[0], key) for key in gone)
     for plain, keys in by_node.items():
-        own, node = _waiting(seen, robot, keys), made[robot].nodes[plain]
+        own, node = _missed_names(seen, robot, keys), made[robot].nodes[plain]
         if not own:
             continue
         theirs = [made[like].ends[key] for key in keys]
@@ -171,7 +171,7 @@ def _lost_ends(
         )  # fmt: skip
 
 
-def _waiting(seen: Index, robot: str, keys: Sequence[_Key]) -> tuple[str, ...]:
+def _missed_names(seen: Index, robot: str, keys: Sequence[_Key]) -> tuple[str, ...]:
     """Return the robot's names that a node waits for and only what the robot lacks would serve."""
     sides = {(kind, _OTHER_SIDE[role], name): role for _, kind, role, name in keys}
     found: dict[str, None] = {}
@@ -184,9 +184,7 @@ def _waiting(seen: Index, robot: str, keys: Sequence[_Key]) -> tuple[str, ...]:
 
 
 def _is_needy(end: End) -> bool:
-    """Return whether it is useless alone. A reader and a client are, a managed node, joints, and
-    who drives; a server or a sensor of which one robot's program makes use is not, nor what seldom
-    has all its inputs."""
+    """Return whether an end is useless alone: a reader, a client, a managed node, joints, a drive."""
     if end.role == SUBSCRIBES and chooses(end.node):
         return False
     wants = end.role in (SUBSCRIBES, CALLS) or end.name.endswith(words.CHANGE_STATE)
@@ -248,8 +246,7 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
 
 
 def _silent_or_slow(seen: Index) -> Iterator[Finding]:
-    """Report sensors of a running system that are slower than another robot's, or send nothing while
-    the robot sends others: as another robot does, or all of their kind that the robot's nodes read."""
+    """Report sensors of a running system that are slower than another robot's, or silent."""
     rates = dict(sorted((it.topic, it.rate) for it in seen.system.heard))
     robots, flows = ({seen.robot(it) for it in rates if rates[it] >= least} for least in (0, 1e-9))
     kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in rates}
@@ -286,8 +283,7 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="leak")
 def driver_missing(seen: Index) -> Iterator[Finding]:
-    """Report a missing driver by its readers, and another robot that has it: all that one node of
-    the other robot does is one finding."""
+    """Report a missing driver by its readers, with another robot's node that does the same."""
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
@@ -361,8 +357,7 @@ def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
 
 
 def _missed_side(seen: Index, ends: Ends) -> str:
-    """Return the role that is missing at a robot's name although one of its nodes waits for it: to
-    send sensor data, to obey velocities, to serve an action; empty for none."""
+    """Return the role that is missing at a robot's name although a node waits for it; or ""."""
     if ends.kind == ACTION:
         return SERVES if at_work(ends.clients) and not ends.servers else ""
     kind, own = words.kind_of_data(ends.name, ends.type), seen.robot(ends.name)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of where a robot is: nothing joins the map and the robot, the odometry is another's, or
-tf2 drops transforms as they come.
-"""
+"""Dangers of where a robot is: no map, another's odometry, transforms that tf2 drops."""
 
 from collections.abc import Iterator, Mapping, Set
 from math import inf, isfinite
@@ -11,8 +9,9 @@ from multibot_rewrite.base.conventions import BODY_FRAMES, TF_SWITCHES, WORLD_FR
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, shorten, unique
-from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, to_set
+from multibot_rewrite.rules.system.frame_ids import trees_of
 from multibot_rewrite.rules.system.states import ACTIVE
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide
@@ -38,31 +37,52 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
     """Report a map that no transform joins to the robot; pieces below the odometry are MG406."""
     for tree in seen.trees:
         silent = (it for it in tree.listeners if switch(TF_SWITCHES, it))
-        localizers = [it for it in (*tree.senders, *silent) if _starts_at(seen, it)]
+        localizers = [it for it in (*tree.senders, *silent) if _start_pose_end(seen, it)]
         if not localizers or not tree.edges or collide(seen, tree):
             continue
         for node in unique(localizers):
-            body, start = _body(seen, tree, seen.robot(node)), _starts_at(seen, node)
+            body, start = _unjoined_body(seen, tree, seen.robot(node)), _start_pose_end(seen, node)
             if body and node not in _forbidden_senders(seen):
                 yield map_not_joined.finding(
                     f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
-                    **_why(seen, tree, node, body, start.name if start else "")._asdict(),
+                    **_why_not_localized(seen, tree, node, body, start.name if start else "")._asdict(),
                     robot=seen.robot(node), node=node, names=(body.root, *body.loose),
                 )  # fmt: skip
+    yield from _maps_below_the_map(seen)
 
 
-def _starts_at(seen: Index, node: str) -> End | None:
+def _maps_below_the_map(seen: Index) -> Iterator[Finding]:
+    """Yield maps in the frame of odometry, or of a body, that is sent below the map's: they move."""
+    for it in seen.system.heard:
+        type_, senders = sent_on(seen, it.topic)
+        is_map = words.kind_of_data(it.topic, type_) == words.MAP and senders
+        if not is_map or seen.plain_frame(it.frame) not in (_ODOM, *BODY_FRAMES):
+            continue
+        robot = seen.robot(it.topic) or only(robots_of(seen, senders))
+        edges = (one for tree in trees_of(seen, robot) for one in tree.edges)
+        root = root_of(it.frame, {one.child: one.parent for one in edges})
+        if seen.plain_frame(root) in WORLD_FRAMES and _may_be_of(seen, it.frame, robot):
+            yield map_not_joined.finding(
+                f"frame_id of {it.topic} is {it.frame}, which moves in {root}; sent by {senders[0]}",
+                f"set the frame of {senders[0]} to that of the map",
+                level=WARNING, robot=robot, node=senders[0], names=(it.topic,),
+            )  # fmt: skip
+
+
+def _start_pose_end(seen: Index, node: str) -> End | None:
     """Return where the node surely reads a start pose; None for one that needs none."""
     read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES and it.sure == RUNS)
     return next((it for it in read if words.is_start_pose(seen.plain(it.name), it.type)), None)
 
 
-def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
+def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     """Return the robot's part of a tree if nothing joins its odometry with the map; None otherwise."""
     above: dict[str, str] = {it.child: it.parent for it in tree.edges}
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
-    frames = [it for it in {**above, **dict.fromkeys(above.values())} if _is_of(seen, it, robot)]
+    frames = [
+        it for it in {**above, **dict.fromkeys(above.values())} if _may_be_of(seen, it, robot)
+    ]
     # What hangs on the map and has nothing below it.
     ends = above.keys() - {*above.values()}
     loose = [it for it in frames if it in ends and above[it] in WORLD_FRAMES]
@@ -73,7 +93,7 @@ def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     return _Body(next(iter(roots)), tuple(loose)) if is_one else None
 
 
-def _is_of(seen: Index, frame: str, robot: str) -> bool:
+def _may_be_of(seen: Index, frame: str, robot: str) -> bool:
     return seen.frame_robot(frame) in ("", robot)
 
 
@@ -83,7 +103,7 @@ def _forbidden_senders(seen: Index) -> Set[str]:
     return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
 
 
-def _why(seen: Index, tree: Tree, node: str, body: _Body, start: str) -> Cause:
+def _why_not_localized(seen: Index, tree: Tree, node: str, body: _Body, start: str) -> Cause:
     """Return the first reason why a node does not send map -> odom."""
     state = seen.node[node].lifecycle if node in seen.node else ""
     if state not in ("", ACTIVE):
@@ -116,9 +136,9 @@ def odometry_of_another(seen: Index) -> Iterator[Finding]:
             owner, robot = seen.frame_robot(edge.parent), seen.frame_robot(edge.child)
             if owner and robot and owner != robot and seen.plain_frame(edge.parent) == _ODOM:
                 message = f"{edge.child} is sent below {edge.parent}, the odometry of {owner}"
-                hint = f"set the odometry frame of {robot} to its own{see([edge])}"
+                hint = f"set the odometry frame of {robot} to its own{see_all([edge])}"
                 yield odometry_of_another.finding(
-                    message, hint, robot=robot, names=(edge.child,), **where([edge])
+                    message, hint, robot=robot, names=(edge.child,), **last_place([edge])
                 )
 
 

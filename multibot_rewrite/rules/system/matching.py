@@ -11,8 +11,7 @@ from multibot_rewrite.base.conventions import EVERYBODYS, STAMP_SWITCHES, switch
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.knowledge.node_sets import older_node
-from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_set
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once
@@ -40,19 +39,21 @@ def types_differ(seen: Index) -> Iterator[Finding]:
             continue
         if planned and not planned >= {it for it, _ in types}:
             asked = (it for it in every if it.role != SUBSCRIBES or not seen.is_tool(it.node))
-            if apart := _apart(asked, {(it, "") for it in planned}):
-                yield from (_not_as_planned(seen, ends, own, planned) for own in apart.values())
+            if apart := _unconnected(asked, {(it, "") for it in planned}):
+                yield from (
+                    _planned_type_finding(seen, ends, own, planned) for own in apart.values()
+                )
                 continue
         givers, takers = ends[3:5] if ends.kind == TOPIC else ends[5:7]
         if len(types) < 2:
             continue
         # Of a side alone the first one counts.
         others = givers if takers else givers[:1]
-        apart = _apart(takers or givers, _all_types(others))
+        apart = _unconnected(takers or givers, _all_types(others))
         if takers and not apart:
             # Every reader hears somebody; a sender may be heard by nobody.
-            others, apart = takers, _apart(givers, _all_types(takers))
-        yield from (_types_differ(seen, ends, own, others) for own in apart.values())
+            others, apart = takers, _unconnected(givers, _all_types(takers))
+        yield from (_type_finding(seen, ends, own, others) for own in apart.values())
 
 
 @once
@@ -68,7 +69,7 @@ def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
     return found
 
 
-def _types_differ(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
+def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
     asked, given = dict(_all_types(own)), dict(_all_types(others))
     message, cause = _difference(ends.name, others[0].node, asked, given)
     stamped = _by_a_switch(asked.keys(), given.keys())
@@ -79,20 +80,21 @@ def _types_differ(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
         level, cause = NOTE, f"{cause}; {stale}: its type may be another one now"
     robot = seen.robot(node) or seen.robot(ends.name)
     return types_differ.finding(
-        message, f"{cause}{switched.hint}{see(both)}", settings=switched.settings,
-        level=level, robot=robot, node=node, names=(ends.name,), **where(both),
+        message, f"{cause}{switched.hint}{see_all(both)}", settings=switched.settings,
+        level=level, robot=robot, node=node, names=(ends.name,), **last_place(both),
     )  # fmt: skip
 
 
 def _stale(seen: Index, ends: Iterable[End]) -> str:
     """Say that the type of one of the ends is known of an earlier version of its node only."""
+    from multibot_rewrite.knowledge.node_sets import older_node  # a fault alone needs it
+
     known = ((seen.node[it.node].known, it.type) for it in ends if it.node in seen.node)
     return next(filter(None, (older_node(it, seen.system.release, own) for it, own in known)), "")
 
 
 def to_stamp(seen: Index, ends: Iterable[End]) -> Cause:
-    """Return the parameters that make all velocities of a robot's Nav2 stamped, if that side is
-    not; an empty cause if no parameter is known."""
+    """Return the parameters that stamp all velocities of a robot's Nav2; an empty cause for none."""
     bare = [it.node for it in ends if it.type and not it.type.endswith(STAMPED)]
     if not bare or not all(switch(STAMP_SWITCHES, it) for it in bare):
         return Cause("")
@@ -102,7 +104,9 @@ def to_stamp(seen: Index, ends: Iterable[End]) -> Cause:
     return cause._replace(hint=f": {cause.hint} (from Jazzy on)")
 
 
-def _not_as_planned(seen: Index, ends: Ends, own: Sequence[End], planned: Set[str]) -> Finding:
+def _planned_type_finding(
+    seen: Index, ends: Ends, own: Sequence[End], planned: Set[str]
+) -> Finding:
     node = own[0].node
     message, _ = _difference(
         ends.name, "the plan", dict(_all_types(own)), dict.fromkeys(planned, "")
@@ -128,7 +132,7 @@ def _all_types(ends: Iterable[End]) -> set[tuple[str, str]]:
     return {it for end in known for it in _types(end)} if all(end.type for end in known) else set()
 
 
-def _apart(ends: Iterable[End], given: set[tuple[str, str]]) -> Mapping[str, Sequence[End]]:
+def _unconnected(ends: Iterable[End], given: set[tuple[str, str]]) -> Mapping[str, Sequence[End]]:
     """Return by node the ends that connect with none of the types, if all its types are known."""
     by_node = lists_by_key((end.node, end) for end in (ends if given else ()))
     # Both sides have a version of a type; one without a hash may be any.
@@ -173,8 +177,9 @@ def _by_a_switch(some: Set[str], others: Set[str]) -> bool:
 
 @system_rule("MG307", "qos-incompatible", ERROR)
 def qos_never_meets(seen: Index) -> Iterator[Finding]:
-    """Report each subscription and what it lacks; if several lack the same of one publisher, that
-    publisher. Zenoh connects any two (rmw_zenoh design.md)."""
+    """Report each subscription and what it lacks; if several lack it of one publisher, that one.
+
+    Zenoh connects any two (rmw_zenoh design.md)."""
     for (kind, name), ends in seen.by_name.items() if seen.system.environment.rmw != ZENOH else ():
         if kind != TOPIC or name in EVERYBODYS or not _refuses(ends):
             continue
@@ -189,7 +194,7 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
                 for conflicts, publishers in refused.items():
                     one = _Refused(end, nodes_of(publishers), conflicts, hears)
                     found[one[1:]].append(one)
-        yield from (_never_meets(seen, *them) for them in found.values())
+        yield from (_qos_finding(seen, *them) for them in found.values())
 
 
 def _refuses(ends: Ends) -> bool:
@@ -208,7 +213,7 @@ class _Refused(NamedTuple):
     hears: bool
 
 
-def _never_meets(seen: Index, first: _Refused, *more: _Refused) -> Finding:
+def _qos_finding(seen: Index, first: _Refused, *more: _Refused) -> Finding:
     end, nodes, conflicts, hears = first
     offered = " and ".join(offer for offer, _ in conflicts)
     asked = " and ".join(request for _, request in conflicts)
@@ -309,8 +314,7 @@ def _is_latched(ends: Ends) -> bool:
 
 @lru_cache(maxsize=1024)
 def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
-    """Return where two QoS do not connect by the rules of DDS: (offered, requested) for each
-    policy. A policy that is unknown or the system's default is no conflict."""
+    """Return where two QoS do not connect by the rules of DDS, as (offered, requested) texts."""
     words = (
         (offered.reliability, requested.reliability, RELIABILITY),
         (offered.durability, requested.durability, DURABILITY),
@@ -322,7 +326,11 @@ def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
     )
     return (
         *((o, r) for o, r, order in words if _is_weaker(o, r, order)),
-        *((_time(o, what), _time(r, what)) for o, r, what in times if _seconds(o) > _seconds(r)),
+        *(
+            (_time_text(o, what), _time_text(r, what))
+            for o, r, what in times
+            if _seconds(o) > _seconds(r)
+        ),
     )
 
 
@@ -344,5 +352,5 @@ def _seconds(time: float) -> float:
     return time if time > 0 else inf
 
 
-def _time(time: float, what: str) -> str:
+def _time_text(time: float, what: str) -> str:
     return f"no {what[2:]}" if _seconds(time) == inf else f"{what} of {time:g} s"

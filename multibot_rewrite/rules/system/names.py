@@ -10,7 +10,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, meant_name, nearest
 from multibot_rewrite.base.wording import and_then, shorten, unique
-from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import ACTION_PARTS, NONE, Cause, Spelled, alike
 from multibot_rewrite.rules.system.instead import (
     COMMON,
@@ -40,8 +40,7 @@ ABSENT = "is that robot started, and is its name right?"
 
 @system_rule("MG303", "topic-names-miss", ERROR, absence=True, drawn="leak")
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
-    """Yield subscribers whose topic nobody sends, with the name it is sent under where one is alike. It
-    is a note if a tool sends that, and a warning if only the type is alike: another may send it."""
+    """Yield subscribers whose topic nobody sends, with the name it is sent under if one is alike."""
     topics = {name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC}
     unsent = [it for it in topics.values() if not it.publishers and it.type != TF]
     unsent = [it for it in unsent if it.name not in EVERYBODYS]
@@ -63,12 +62,12 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
                 yield _missed_topic(seen, end, near, ERROR)
             elif other := None if lost else sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
-            elif mine := _of_robots(seen, end):
-                yield _reads_no_robots(seen, end, mine)
+            elif mine := _robots_topics(seen, end):
+                yield _outside_reader(seen, end, mine)
             elif absent := nobody_in(seen, ends.name, published):
                 yield topic_names_miss.finding(
                     f"subscribes to {ends.name}, which {seen.nobody} publishes; {absent}",
-                    ABSENT, level=WARNING, node=end.node, names=(ends.name,), **where([end]),
+                    ABSENT, level=WARNING, node=end.node, names=(ends.name,), **last_place([end]),
                 )  # fmt: skip
         for other_name, (first, *more) in by_kind.items():
             # A lone sender and a lone reader of what a sensor measures are made for each other, but for
@@ -81,7 +80,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
 
 
-def _of_robots(seen: Index, end: End) -> Sequence[str]:
+def _robots_topics(seen: Index, end: End) -> Sequence[str]:
     """Return the robots' topics that a node outside of them reads: sensors, odometry, a map."""
     kind = words.kind_of_data(end.name, end.type)
     outside = not (seen.robot(end.node) or seen.robot(end.name) or seen.is_tool(end.node))
@@ -91,14 +90,15 @@ def _of_robots(seen: Index, end: End) -> Sequence[str]:
     return [it for it in names if seen.by_name[TOPIC, it].type == end.type]
 
 
-def _reads_no_robots(seen: Index, end: End, names: Sequence[str]) -> Finding:
+def _outside_reader(seen: Index, end: End, names: Sequence[str]) -> Finding:
+    """Return the finding about a node of no robot that reads what only robots publish."""
     sender = nodes_of(seen.by_name[TOPIC, names[0]].publishers)[0]
     several = f" (or that of another of the {len(names)} robots)" if len(names) > 1 else ""
     lost = f"subscribes to {end.name}, which {seen.nobody} publishes"
     return topic_names_miss.finding(
         f"{lost}; {sender} publishes {names[0]}{several}",
         f"start it in its robot's namespace, or pass the rule {end.name}:={names[0]}{several}",
-        node=end.node, names=(end.name, names[0]), **where([end]),
+        node=end.node, names=(end.name, names[0]), **last_place([end]),
         remaps=() if several else (Remap(end.node, end.name, names[0]),),
     )  # fmt: skip
 
@@ -118,7 +118,7 @@ def _published_instead(
     """Return the published topic that was probably meant; empty for none."""
     robot, owner = seen.robot(end.node), seen.robot(end.name)
     own = {"", robot or owner}
-    above = (it for it in _written_out(end.node, end.name) if it in published)
+    above = (it for it in _possible_names(end.node, end.name) if it in published)
     fitting = (it for it in above if published[it].type == end.type)
 
     def mine(it: str) -> bool:
@@ -139,7 +139,7 @@ def _published_instead(
         return not _is_of_other_robot(seen, end.name, it) and (not owner or mine(it))
 
     bare = seen.plain(end.name)
-    hidden = [_without_own_name(end), *_hiding(seen, end.name)]
+    hidden = [_without_own_name(end), *_hidden_names(seen, end.name)]
     hidden += [bare] if owner and not seen.robot(bare) else []
     same = (it for it in hidden if it in unheard and unheard[it].type == end.type)
     if found := next(filter(is_of_another, same), ""):
@@ -161,14 +161,14 @@ def _topics_by_type(seen: Index) -> Mapping[str, Spelled]:
 
 def _of_a_robot_without(seen: Index, end: End, published: Mapping[str, Ends]) -> str:
     """Return the topic of the one robot that lacks the node, which then has no namespace; or empty."""
-    there = _with_node(seen).get(end.node, set())
+    there = _robots_with_node(seen).get(end.node, set())
     without = [it for it in seen.robots if it not in there] if len(there) > 1 else []
     name = f"/{without[0]}{end.name}" if len(without) == 1 else ""
     return name if name in published and published[name].type == end.type else ""
 
 
 @once
-def _with_node(seen: Index) -> Mapping[str, Set[str]]:
+def _robots_with_node(seen: Index) -> Mapping[str, Set[str]]:
     """Return the robots that have a node, by its name without theirs."""
     return sets_by_key((seen.plain(it), seen.robot(it)) for it in seen.nodes)
 
@@ -190,9 +190,8 @@ def _published(seen: Index) -> Mapping[str, Sequence[Ends]]:
     )
 
 
-def _written_out(node: str, name: str) -> Iterator[str]:
-    """Yield what a relative name may have meant: one in a namespace above, or one written out with
-    its namespace: ``/robot1/costmap/robot1/scan`` for ``robot1/scan``."""
+def _possible_names(node: str, name: str) -> Iterator[str]:
+    """Yield what a relative name may have meant: in a namespace above, or with it written twice."""
     yield from in_namespaces_above(node, name)
     space = node
     while space := space.rpartition("/")[0]:
@@ -200,7 +199,7 @@ def _written_out(node: str, name: str) -> Iterator[str]:
             yield name.removeprefix(space)
 
 
-def _hiding(seen: Index, meant: str) -> Iterator[str]:
+def _hidden_names(seen: Index, meant: str) -> Iterator[str]:
     """Yield what a name becomes below its publisher's own name, or with its namespace twice."""
     space, _, last = meant.rpartition("/")
     yield from _below_senders(seen).get((space, last), ())
@@ -257,9 +256,9 @@ def _missed_topic(
         )
     level = NOTE if is_viewer(sender) else level
     return topic_names_miss.finding(
-        message, cause + see((other.publishers[0], end)),
+        message, cause + see_all((other.publishers[0], end)),
         level=level, robot=robot, node=end.node, names=(end.name, other.name), remaps=remaps,
-        **where([end]),
+        **last_place([end]),
     )  # fmt: skip
 
 
@@ -276,7 +275,7 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
             for end in filter(_surely_runs, _each_node(ends.clients)):
-                yield from _unserved(
+                yield from _unserved_findings(
                     seen, end, _served_names(seen).get((end.kind, end.type), _NOBODY)
                 )
 
@@ -314,7 +313,7 @@ def _served_names(seen: Index) -> Mapping[tuple[str, str], _Served]:
     }
 
 
-def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
+def _unserved_findings(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     listed = listed_in_vain(seen, end)
     outside = f"/{last_word(listed)}" if listed and f"/{last_word(listed)}" in seen.nodes else ""
     near = "" if outside else _served_instead(seen, end, served) or in_other_namespace(seen, end)
@@ -340,7 +339,7 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
         yield server_names_miss.finding(
             f"{lost}: {listed} is in its list, and does not run{instead}",
             cause.hint, settings=cause.settings, remaps=cause.remaps,
-            robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
+            robot=seen.robot(end.node), node=end.node, names=(end.name,), **last_place([end]),
         )  # fmt: skip
     elif not (listed or is_viewer(end.node)) and (
         absent := nobody_in(seen, end.name, served.names)
@@ -348,34 +347,32 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
         yield server_names_miss.finding(
             f"{lost}; {absent}", ABSENT, level=WARNING, node=end.node, names=(end.name,)
         )
-    elif not listed and _waits(seen, end):
+    elif not listed and _calls_in_vain(seen, end):
         yield server_names_miss.finding(
             lost, "start the node that serves it, or leave out what calls it", level=WARNING,
-            robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
+            robot=seen.robot(end.node), node=end.node, names=(end.name,), **last_place([end]),
         )  # fmt: skip
 
 
-def _waits(seen: Index, end: End) -> bool:
-    """Return whether it is the user's own program that calls what nobody serves. Nav2's and
-    MoveIt's nodes, tools and what every node serves are left out, and a view in which nodes are
-    missing. ``nothing_known_sends`` reports what is known by code alone."""
+def _calls_in_vain(seen: Index, end: End) -> bool:
+    """Return whether the end is of a user's own program, and calls what nobody serves."""
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
-    usual = end.type.startswith(COMMON) or is_from_outside(end.name)
+    # A name below a node that runs is that node's own.
+    below = end.name.rpartition("/")[0] in seen.node
+    common = end.type.startswith(COMMON) and not (below and end.type.startswith("std_srvs/"))
     # Beside other robots it may be one that is not started yet, if it is not its own.
-    own = seen.robot(end.node)
+    own = seen.robot(end.name) if below else seen.robot(end.node)
     others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
     # What all robots call in vain is so by their make; goals that another robot takes are MG322.
     vain, served = _called_by_robots(seen).get((end.kind, seen.plain(end.name)), ((), ()))
     others = others or any(it != own for it in (*vain, *(served if end.kind == ACTION else ())))
-    return (
-        not (seen.in_doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
-    )
+    usual = common or is_from_outside(end.name) or "/_" in end.name
+    return not (seen.in_doubt or theirs or usual or end.code_name or others)
 
 
 @once
 def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], list[str]]]:
-    """Return by kind and name without the robot's: the robots whose service or action is called in
-    vain, and those whose one is served."""
+    """Return by kind and plain name the robots that call in vain, and those that are served."""
     found: dict[tuple[str, str], tuple[list[str], list[str]]] = defaultdict(lambda: ([], []))
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.clients or ends.servers else ""
@@ -396,9 +393,9 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
         cause, remaps = f"{managed[0]} manages that node already: do not start {end.node}", ()
     clicked = is_viewer(end.node) and not is_spawner(end.node)
     return server_names_miss.finding(
-        f"{lost}; {nodes_of(servers)[0]} serves {other}", cause + see((servers[0], end)),
+        f"{lost}; {nodes_of(servers)[0]} serves {other}", cause + see_all((servers[0], end)),
         level=NOTE if clicked else level, robot=seen.robot(end.node) or seen.robot(other),
-        node=end.node, names=(end.name, other), remaps=remaps, **where([end]),
+        node=end.node, names=(end.name, other), remaps=remaps, **last_place([end]),
     )  # fmt: skip
 
 
@@ -412,7 +409,7 @@ def _served_instead(seen: Index, end: End, served: _Served) -> str:
     # Another robot's is no answer to a robot that lacks it.
     near = [it for it in same if not owner or not seen.robot(it)]
     own = [it for it in near if seen.robot(it) == robot]
-    above = (it for it in _written_out(end.node, end.name) if it in served.names)
+    above = (it for it in _possible_names(end.node, end.name) if it in served.names)
     first = (next(iter(it), "") for it in (own, near, above))
     return next(filter(None, first), "") or alike(
         end.name, served.spelled, end.type, lambda it: not _is_of_other_robot(seen, end.name, it)
@@ -424,7 +421,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
     if seen.robot(name):
         return ""
     for at in (at for at in range(2, len(name)) if name[at] == "/"):
-        alike_, space = _named_by_robots(seen).get(name[at:], ()), name[:at]
+        alike_, space = _names_by_plain(seen).get(name[at:], ()), name[:at]
         other = next((it for it in reversed(alike_) if it in known), "")
         if other and space not in spaces(seen):
             return f"no node is in {space}, and {seen.robot(other)} has {other}"
@@ -432,15 +429,14 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
 
 
 @once
-def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
+def _names_by_plain(seen: Index) -> Mapping[str, Sequence[str]]:
     """Return the names of robots, by their name without a robot's."""
     return lists_by_key((seen.plain(name), name) for _, name in seen.by_name if seen.robot(name))
 
 
 @system_rule("MG305", "service-of-two-nodes", ERROR, meant=(SERVES,))
 def service_of_two_nodes(seen: Index) -> Iterator[Finding]:
-    """Report services of two nodes; two nodes of one name are another finding, and two filters of
-    robot_localization in one robot serve `set_pose` by design."""
+    """Report services of two nodes; set_pose of two filters in one robot is by design."""
     for (kind, name), ends in seen.by_name.items():
         nodes = nodes_of(ends.servers) if ends.servers else ()
         if len(nodes) > 1 and (kind == ACTION or len(robots_of(seen, nodes)) > 1):

@@ -89,7 +89,8 @@ def probable_matches(
     unplanned: Iterable[str],
     ownership: NameOwnership,
 ) -> dict[str, str]:
-    """Return for each missing node (node -> robot) the running node that it probably is, if any.
+    """Return missing node -> the running node that it probably is, for nodes that have one.
+
     ``others`` are all running nodes that are not in the plan, ``unplanned`` those of them that are
     no tools: only these are compared by similar name."""
     by_robot: dict[str, list[str]] = defaultdict(list)
@@ -120,10 +121,9 @@ def similar(name: str, known: Collection[str]) -> str:
 
 @planned_rule("MG102", "missing-endpoint", ERROR, absence=True, drawn="missing", nodes=False)
 def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report it only if its node is in the graph. A name of no robot, or of another one, in its
-    place or in addition is reported as the fault for the other robots."""
+    """Report what a running node lacks of its planned ends, and what it has in their place."""
     if not seen.nodes:
-        yield from _recorded(plan, seen)
+        yield from _faults_of_recording(plan, seen)
         return
     taken = set()
     for planned in {it[:1] + it[3:]: end for it, end in missing(plan, seen).items()}.values():
@@ -133,12 +133,12 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
             continue
         used = _used_instead(plan, seen, planned)
         # Without one that is called so, the only one of its type is what the hint names.
-        alike = [] if used else _of_its_type(plan, seen, planned)
+        alike = [] if used else _same_type_names(plan, seen, planned)
         instead = used or only(alike)
         taken.add((planned.node, instead))
         end = next((it for it in ends_of(seen, used) if it.node == planned.node), planned)
         robot = plan.robot_of.get(planned.node, "")
-        rule = _of_wrong_robot(plan, end, robot) or missing_endpoint
+        rule = _broken_rule(plan, end, robot) or missing_endpoint
         yield rule.finding(
             f"should {TO_DO[planned.role]} {planned.kind} {planned.name}, but does not",
             **_why_missing(plan, seen, planned, used)._asdict(),
@@ -146,7 +146,7 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
         )  # fmt: skip
     for node, robot in plan.robot_of.items():
         for end in {it.name: it for it in unplanned_ends(plan, seen).get(node, ())}.values():
-            wrong = _of_wrong_robot(plan, end, robot)
+            wrong = _broken_rule(plan, end, robot)
             if wrong and (node, end.name) not in taken:
                 other = plan.robot(end.name)
                 # As far as they are there.
@@ -175,7 +175,7 @@ def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
             users[key[3]].append(end)
     for name, ends in users.items():
         robots = unique(plan.robot_of[it.node] for it in ends)
-        rule = _rule_of(plan, ends[0]) if len(robots) > 1 and not plan.robot(name) else None
+        rule = _sharing_rule(plan, ends[0]) if len(robots) > 1 and not plan.robot(name) else None
         if rule:
             yield rule.finding(
                 f"uses {name}, which the plan has for several robots: {shorten(robots, SEVERAL)}",
@@ -184,20 +184,19 @@ def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _of_wrong_robot(plan: Index, end: End, robot: str) -> Rule | None:
+def _broken_rule(plan: Index, end: End, robot: str) -> Rule | None:
     """Return the rule that an unplanned end of a robot's node breaks towards other robots, or None."""
     other = plan.robot(end.name)
     planned = (end.node, end.kind, end.role, end.name) in plan.by_key
     if planned or not robot or other == robot:
         return None
     if not other or end.name in plan.system.shared_topics or end.type == TF:
-        return _rule_of(plan, end)
+        return _sharing_rule(plan, end)
     return data_of_another_robot if end.role == SUBSCRIBES else command_from_another_robot
 
 
-def _rule_of(plan: Index, end: End) -> Rule | None:
-    """Return the rule that sharing a name with other robots breaks; None if sharing is meant.
-    Sharing tf has rules of its own."""
+def _sharing_rule(plan: Index, end: End) -> Rule | None:
+    """Return the rule that sharing a name with other robots breaks; None if it is meant."""
     if end.name in plan.system.shared_topics or end.name in EVERYBODYS or end.type == TF:
         return None
     if end.kind != TOPIC:
@@ -206,6 +205,7 @@ def _rule_of(plan: Index, end: End) -> Rule | None:
 
 
 def _why_besides(plan: Index, end: End, other: str) -> Cause:
+    """Return why a node has an end of no robot or of another one, and what to do."""
     node, name = end.node, end.name
     robot, (plugin, place) = plan.robot_of[node], plugin_of(plan, node)
     if other:
@@ -224,7 +224,7 @@ def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
     if not used:
         managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
-        same = _of_its_type(plan, seen, planned)
+        same = _same_type_names(plan, seen, planned)
         # Of text and numbers are many things.
         if len(same) == 1 or (same and "std_" not in planned.type):
             return Cause(
@@ -279,7 +279,8 @@ def _used_instead(plan: Index, seen: Index, planned: End) -> str:
     return similar(planned.name, unplanned)
 
 
-def _of_its_type(plan: Index, seen: Index, planned: End) -> list[str]:
+def _same_type_names(plan: Index, seen: Index, planned: End) -> list[str]:
+    """Return the unplanned names that the node has with the planned type."""
     return [it.name for it in _unplanned(plan, seen, planned) if it.type == planned.type != ""]
 
 
@@ -293,30 +294,32 @@ def _unplanned(plan: Index, seen: Index, planned: End) -> list[End]:
     ]
 
 
-def _recorded(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report, if running nodes are unknown, a topic that each robot sends by the plan, and that
-    exists for only some of them, or under a name of no robot."""
+def _faults_of_recording(plan: Index, seen: Index) -> Iterator[Finding]:
+    """Report topics of a recording that only some robots have, or that are of no robot."""
     there = {name: ends for (kind, name), ends in seen.by_name.items() if kind == TOPIC}
-    for names in _of_each(plan.sure, PUBLISHES).values():
+    for names in _planned_topics(plan.sure, PUBLISHES).values():
         others = [name for name in names.values() if name in there]
         for robot, name in names.items() if others else ():
             if name not in there:
                 message = f"{name} is not there, {shorten(others, SEVERAL)} is"
                 cause = "did its node run, in its robot's namespace, and was the topic recorded?"
                 yield missing_endpoint.finding(message, cause, robot=robot, names=(name,))
-    planned, every = {name for *_, name in plan.by_key}, _of_each(plan, PUBLISHES, SUBSCRIBES)
+    planned, every = (
+        {name for *_, name in plan.by_key},
+        _planned_topics(plan, PUBLISHES, SUBSCRIBES),
+    )
     for name in [it for it in there if it not in planned and not plan.robot(it)]:
         segments = name.strip("/").split("/")
         likely = {"/" + "/".join(it) for it in (segments, segments[1:], segments[:-1])}
         meant = [own for plain in likely for own in every.get(plain, {}).values()]
-        rule = _of_wrong_robot(plan, there[name].publishers[0], plan.robots[0]) if meant else None
+        rule = _broken_rule(plan, there[name].publishers[0], plan.robots[0]) if meant else None
         if rule:
             message = f"{name} is of no robot; planned: {shorten(meant, SEVERAL)}"
             cause = "start its node in its robot's namespace, with the rules of multibot plan"
             yield rule.finding(message, cause, names=(name,))
 
 
-def _of_each(plan: Index, *roles: str) -> Mapping[str, Mapping[str, str]]:
+def _planned_topics(plan: Index, *roles: str) -> Mapping[str, Mapping[str, str]]:
     """Return, by name without the robot, each robot's planned topic with such a role, and its tf."""
     named = [name for _, kind, role, name in plan.by_key if kind == TOPIC and role in roles]
     trees = [it.tf_topic for it in plan.system.robots if it.frames]

@@ -31,9 +31,10 @@ from multibot_rewrite.system.tf_copies import static_topic
 
 
 class Stray(NamedTuple):
-    """A frame of a robot that is not planned. ``meant`` is the planned frame that it is under another
-    name, or empty; ``added`` what it has in front or behind besides. ``bare``: it lacks the robot's
-    name."""
+    """A frame of a robot that is not planned.
+
+    ``meant`` is the planned frame that it is under another name, or empty; ``added`` what it has in
+    front or behind besides. ``bare``: it lacks the robot's name."""
 
     frame: str
     meant: str
@@ -48,7 +49,7 @@ Strays = Mapping[str, Sequence[Stray]]
 @planned_rule("MG207", "frame-without-robot-name", ERROR, nodes=False, absence=True)
 def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
     """Report a planned frame that is sent without the robot's name, for one robot only."""
-    for tree, robot, found in _of_each(plan, seen):
+    for tree, robot, found in _strays_of_robots(plan, seen):
         if bare := [it for it in found if it.bare]:
             bare.sort(key=lambda it: robot.frames.index(it.meant))
             names = [it.frame for it in bare]
@@ -77,15 +78,14 @@ def _why_bare(plan: Index, tree: Tree, robot: Robot, bare: Sequence[Stray]) -> C
 
 @planned_rule("MG204", "undeclared-frame", WARNING, nodes=False)
 def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Yield unplanned frames, except those that a driver adds below its sensor's link. It is an
-    error if a planned frame is missing for it."""
-    for tree, robot, found in _of_each(plan, seen):
+    """Yield unplanned frames, except those that a driver adds below its sensor's link."""
+    for tree, robot, found in _strays_of_robots(plan, seen):
         children = by_child(seen)[tree.topic]
         others = [
             it
             for it in found
             if it.frame in children and not (it.bare or it.added)
-            if not _of_a_sensor(plan, robot.name, it.frame, children)
+            if not _is_added_by_driver(plan, robot.name, it.frame, children)
         ]
         if others:
             names, meant = [it.frame for it in others], others[0].meant
@@ -94,19 +94,18 @@ def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
             there = frames_by_topic(seen)[tree.topic]
             instead = any(it.meant and it.meant not in there for it in others)
             yield undeclared_frame.finding(
-                f"{_frames(names)} {verb} not in the description of {robot.name}",
+                f"{_frames_text(names)} {verb} not in the description of {robot.name}",
                 f"{cause} add {them} to other_frames of the plan",
                 level=ERROR if instead else WARNING, robot=robot.name, names=tuple(names),
             )  # fmt: skip
 
 
-def _frames(names: Sequence[str]) -> str:
+def _frames_text(names: Sequence[str]) -> str:
     return f"frame {names[0]}" if len(names) == 1 else f"frames {shorten(names)}"
 
 
-def _of_a_sensor(plan: Index, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
-    """Return whether it is a frame that a driver adds below its sensor's link. Its name begins like
-    the link's: camera_depth_frame is below camera_link."""
+def _is_added_by_driver(plan: Index, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
+    """Return whether a driver adds the frame: below a link whose name begins like it."""
     above, passed = name, set()
     while above in children and children[above].static and above not in passed:
         passed.add(above)
@@ -125,10 +124,11 @@ def _first_word(plan: Index, frame: str, robot: str) -> str:
 def with_more_names(
     plan: Index, seen: Index
 ) -> Iterator[tuple[str, Cause, Robot, tuple[str, ...]]]:
-    """Yield message, cause, robot and frames: planned ones with the robot's name again, or another
-    prefix. Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in
-    front of parent and child of every transform, as it is."""
-    for _, robot, found in _of_each(plan, seen):
+    """Yield message, cause, robot and frames: planned ones with the name again, or a prefix.
+
+    Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in front of
+    parent and child of every transform, as it is."""
+    for _, robot, found in _strays_of_robots(plan, seen):
         if names := tuple(it.frame for it in found if it.added):
             added = next(it.added for it in found if it.added)
             verb = "is" if len(names) == 1 else "are"
@@ -139,13 +139,13 @@ def with_more_names(
                 " by default), on top of a rewritten description: set them to '' and false",
                 settings=(Setting(node, "frame_prefix", ""),) if node else (),
             )
-            yield f"{_frames(names)} {verb} planned without {added!r}", cause, robot, names
+            yield f"{_frames_text(names)} {verb} planned without {added!r}", cause, robot, names
 
 
 def misnamed(plan: Index, seen: Index) -> Set[str]:
     """Return the robots whose frames are sent under other names, or on another tf topic."""
     strays = set()
-    for tree, robot, found in _of_each(plan, seen):
+    for tree, robot, found in _strays_of_robots(plan, seen):
         sent = by_child(seen)[tree.topic]
         if any(it.meant and it.meant not in sent and it.frame in sent for it in found):
             strays.add(robot.name)
@@ -156,7 +156,7 @@ def misnamed(plan: Index, seen: Index) -> Set[str]:
     return strays
 
 
-def _of_each(plan: Index, seen: Index) -> Iterator[tuple[Tree, Robot, Sequence[Stray]]]:
+def _strays_of_robots(plan: Index, seen: Index) -> Iterator[tuple[Tree, Robot, Sequence[Stray]]]:
     for tree, strays in _strays(plan, seen):
         for robot, found in strays.items():
             yield tree, plan.declared[robot], found
@@ -177,7 +177,7 @@ def _strays_of(plan: Index, tree: Tree, present: Set[str]) -> Strays:
     fixed = {it.child for it in tree.edges if it.static}
     for name in (it for it in frames_in(tree) if it not in _planned_frame_names(plan)):
         robot = plan.frame_robot(name)
-        meant = _meant_by(plan).get(name, {}) if not robot else {}
+        meant = _frames_by_plain(plan).get(name, {}) if not robot else {}
         plain = {one: it for one, it in meant.items() if one in robots}
         bare = [one for one, it in plain.items() if it == name or it not in present]
         if len(bare) == 1:
@@ -203,7 +203,7 @@ def _planned_frame_names(plan: Index) -> Set[str]:
 
 
 @once
-def _planned(plan: Index) -> Mapping[str, Mapping[str, str]]:
+def _planned_by_plain(plan: Index) -> Mapping[str, Mapping[str, str]]:
     """Return the frames of each robot by name without its own, or by name if the layout adds none."""
     found = {}
     for robot in plan.system.robots:
@@ -215,23 +215,24 @@ def _planned(plan: Index) -> Mapping[str, Mapping[str, str]]:
 
 
 @once
-def _meant_by(plan: Index) -> Mapping[str, Mapping[str, str]]:
+def _frames_by_plain(plan: Index) -> Mapping[str, Mapping[str, str]]:
     """Return by name without the robot's the frame of each robot that has it."""
     found: dict[str, dict[str, str]] = defaultdict(dict)
-    for robot, frames in _planned(plan).items():
+    for robot, frames in _planned_by_plain(plan).items():
         for plain, frame in frames.items():
             found[plain][robot] = frame
     return found
 
 
 def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[Stray]:
-    """Yield frames with their planned meaning. A frame may resemble another one (``front_laser``
-    next to ``laser``): a prefix is in front of both ends of a transform, and of all that a
-    robot_state_publisher sends."""
+    """Yield the unplanned frames, each with the planned frame that it probably is."""
     declared, whose = plan.declared[robot], plan.of_frames
     frames, tag = (*declared.frames, *declared.other_frames), whose.tag(robot)
-    plain = {**{whose.without_robot(it, robot): it for it in frames}, **_planned(plan)[robot]}
-    prefixes = {name: _in_front(frames, name) for name in names}
+    plain = {
+        **{whose.without_robot(it, robot): it for it in frames},
+        **_planned_by_plain(plan)[robot],
+    }
+    prefixes = {name: _prefix_of(frames, name) for name in names}
     often = Counter(prefixes.values())
     least = min(len(declared.frames), max(2, len(declared.frames) // 2))
     for name in names:
@@ -249,7 +250,7 @@ def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[St
             yield Stray(name, plain.get(own) or plain.get(similar(own, plain), ""))
 
 
-def _in_front(frames: Sequence[str], name: str) -> str:
+def _prefix_of(frames: Sequence[str], name: str) -> str:
     """Return what is in front of the longest planned frame that the name ends with."""
     ends = [frame for frame in frames if name.endswith(frame) and name != frame]
     return name.removesuffix(max(ends, key=len)) if ends else ""
@@ -257,8 +258,7 @@ def _in_front(frames: Sequence[str], name: str) -> str:
 
 @planned_rule("MG208", "frame-not-received", ERROR, absence=True, drawn="missing")
 def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report one finding for a robot whose senders all run. Without any received transform tf may
-    not have been observed. A frame under another name has a finding of its own."""
+    """Report the planned frames of a robot that no transform has, if all its senders run."""
     senders = _senders(plan) if seen.system.edges else {}
     heard: dict[str, set[str]] = defaultdict(set)
     for tree, strays in _strays(plan, seen):
@@ -268,7 +268,7 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
             owner = plan.of_frames.exact.get(name, "")
             (heard[owner].add if owner else nobodys.add)(name)
         for owner in {*home_of(plan, tree), *robots_on(plan, tree)} if nobodys else ():
-            plain = _planned(plan).get(owner, {})
+            plain = _planned_by_plain(plan).get(owner, {})
             heard[owner] |= nobodys & plan.frames_of[owner]
             heard[owner].update(plain[it] for it in plain.keys() & nobodys)
         for owner, found in strays.items():
@@ -282,8 +282,7 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _left_to_others(plan: Index, seen: Index, robot: Robot) -> Set[str]:
-    """Return the missing frames that only missing optional nodes send. A link without joints comes
-    with the odometry, or not at all."""
+    """Return the missing frames that only missing optional nodes send."""
     sent = sent_by_robot(plan)[robot.name]
     absent = plan.may_miss - seen.nodes.keys()
     left = {name for it in sent if it.node in absent for name in it[1:]}

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rules about nodes by a plan: does every planned one run, and is every one that runs planned? And
-of enclaves of SROS2: a robot's node in that of another robot, or in none.
-"""
+"""Rules about nodes and enclaves by a plan: which do not run, which run and are not planned."""
 
 from __future__ import annotations
 
@@ -35,30 +33,30 @@ from multibot_rewrite.system.words import is_viewer
 def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
     """Report nodes of the plan; a robot without any of its nodes is one ``missing_robot``."""
     for robot in plan.system.robots:
-        for node in () if _is_missing(plan, seen, robot) else _missing(plan, seen, robot):
+        for node in () if _is_missing(plan, seen, robot) else _missing_nodes(plan, seen, robot):
             match = matches(plan, seen).get(node, "")
             cause = why_other_name(plan, node, match) if match else _not_started(plan, node)
             message = (
-                f"node {node} is in the plan, but not in the graph{_waiting(plan, seen, node)}"
+                f"node {node} is in the plan, but not in the graph{_waiting_hint(plan, seen, node)}"
             )
             yield missing_node.finding(message, **cause._asdict(), robot=robot.name, node=node)
     for node in dict.fromkeys(plan.own[""]):
         if node not in seen.nodes and node not in plan.may_miss:
             message = f"node {node} for all robots is in the plan, but not in the graph"
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
-    for group, of in _groups(plan):
+    for group, of in _groups_of_one(plan):
         if seen.nodes.keys().isdisjoint(group) and not (of and is_absent(plan, seen, of)):
             message = f"none of {shorten(group, SEVERAL)} is in the graph; the plan has one of them"
             yield missing_node.finding(message, "start one of them", robot=of, names=group)
 
 
-def _groups(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
+def _groups_of_one(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
     """Yield the groups of nodes of which one runs, each with its robot."""
     for group in alternatives(plan.system):
         yield group, next((plan.robot_of[it] for it in group if it in plan.robot_of), "")
 
 
-def _waiting(plan: Index, seen: Index, node: str) -> str:
+def _waiting_hint(plan: Index, seen: Index, node: str) -> str:
     """Return who calls in vain what the node serves, or reads what it sends."""
     for it in plan.by_node.get(node, ()):
         ends = seen.ends_at(it.kind, it.name)
@@ -71,9 +69,8 @@ def _waiting(plan: Index, seen: Index, node: str) -> str:
     return ""
 
 
-def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:
-    """Return the missing nodes; an optional one is missing only if it runs under another name.
-    A viewer is not: one outside the robot shows all robots."""
+def _missing_nodes(plan: Index, seen: Index, robot: Robot) -> list[str]:
+    """Return the missing nodes; an optional one only if it runs under another name."""
     moved = {it for it in matches(plan, seen) if not is_viewer(it)}
     due = (it for it in plan.own[robot.name] if it in moved or it not in plan.may_miss)
     return [it for it in due if it not in seen.nodes]
@@ -85,7 +82,7 @@ def is_absent(plan: Index, seen: Index, robot: str) -> bool:
 
 
 def _is_missing(plan: Index, seen: Index, robot: Robot) -> bool:
-    return is_absent(plan, seen, robot.name) and bool(_missing(plan, seen, robot))
+    return is_absent(plan, seen, robot.name) and bool(_missing_nodes(plan, seen, robot))
 
 
 def _not_started(plan: Index, node: str) -> Cause:
@@ -154,7 +151,7 @@ def _machines(seen: Index) -> Machines:
 @planned_rule("MG125", "several-alternatives-run", ERROR)
 def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
     """Report alternatives that run at the same time, one finding a group."""
-    for group, robot in _groups(plan):
+    for group, robot in _groups_of_one(plan):
         running = tuple(node for node in group if node in seen.nodes)
         if len(running) > 1:
             message = f"{shorten(running, SEVERAL)} run at once; the plan has one of them"
@@ -180,7 +177,7 @@ def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
         if other := min(named & robots, default=""):
             message = f"{name} is in the enclave {enclave}, which is of {other}"
             yield enclave_of_another_robot.finding(
-                message, **_start(robot, [name])._asdict(), robot=robot, node=name
+                message, **_start_in_enclave(robot, [name])._asdict(), robot=robot, node=name
             )
 
 
@@ -193,11 +190,12 @@ def without_enclave(seen: Index) -> Iterator[Finding]:
     bare = lists_by_key((seen.robot(it.name), it.name) for it in owned if not it.enclave)
     for robot, names in bare.items():
         message = f"{shorten(names)}: in no enclave"
-        cause = _start(robot, names)._asdict()
+        cause = _start_in_enclave(robot, names)._asdict()
         yield without_enclave.finding(message, **cause, robot=robot, node=names[0])
 
 
-def _start(robot: str, nodes: Sequence[str]) -> Cause:
+def _start_in_enclave(robot: str, nodes: Sequence[str]) -> Cause:
+    """Return how to start nodes in the enclave of their robot."""
     option, enclave = "--enclave", enclave_of(robot)
     settings = tuple(Setting(it, option, enclave) for it in nodes)
     return Cause(f"start it with --ros-args {option} {enclave}", settings=settings)
@@ -256,12 +254,12 @@ def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
     missing = [(topic, role) for topic, role in rows if not _is_carried(seen, topic, role)]
     if missing and len(missing) == len(rows):
         running = not all(is_absent(plan, seen, it.name) for it in plan.system.robots)
-        yield from [_not_carried(plan, seen, "", missing, WARNING)] * running
+        yield from [_not_bridged_finding(plan, seen, "", missing, WARNING)] * running
         return
     by_robot = lists_by_key((plan.robot(topic.name), (topic, role)) for topic, role in missing)
     for robot, own in by_robot.items():
         if not (robot and is_absent(plan, seen, robot)):
-            yield _not_carried(plan, seen, robot, own, ERROR)
+            yield _not_bridged_finding(plan, seen, robot, own, ERROR)
 
 
 def _is_carried(seen: Index, topic: Topic, role: str) -> bool:
@@ -271,7 +269,7 @@ def _is_carried(seen: Index, topic: Topic, role: str) -> bool:
     return any(topic.type in ("", it.type) for it in ends)
 
 
-def _not_carried(
+def _not_bridged_finding(
     plan: Index, seen: Index, robot: str, rows: Sequence[tuple[Topic, str]], level: str
 ) -> Finding:
     topic, role = rows[0]

@@ -42,7 +42,7 @@ def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
         # The robot whose node of that name is planned to have these values.
         plain, having = (
             plan.of_names.without_robot(node, plan.robot_of.get(node, "")),
-            _having(plan),
+            _robots_by_value(plan),
         )
         wanted = [having.get((plain, it.name, value), {}) for it, value in found]
         # What few have first: most have most values.
@@ -71,7 +71,7 @@ def _is_serious(plan: Index, it: Parameter) -> bool:
 
 
 @once
-def _having(plan: Index) -> Mapping[tuple[str, str, str], Mapping[str, None]]:
+def _robots_by_value(plan: Index) -> Mapping[tuple[str, str, str], Mapping[str, None]]:
     """Return the robots whose node of a plain name is planned with a parameter's value, in order."""
     found: dict[tuple[str, str, str], dict[str, None]] = defaultdict(dict)
     for it in plan.system.parameters:

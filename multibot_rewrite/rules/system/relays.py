@@ -25,11 +25,11 @@ def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
     """Report relays, except a node that also publishes what it reads: a bridge to another network."""
     read = {
         (end.node, seen.plain(ends.name)): ends
-        for ends in _of_bodies(seen)
+        for ends in _body_topics(seen)
         for end in at_work(ends.subscribers)
         if not seen.robot(end.node)
     }
-    for ends in _of_bodies(seen):
+    for ends in _body_topics(seen):
         for node in nodes_of(ends.publishers):
             source = read.get((node, seen.plain(ends.name)))
             if source is None or node in nodes_of(ends.subscribers):
@@ -43,7 +43,7 @@ def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
 
 
 @once
-def _of_bodies(seen: Index) -> Sequence[Ends]:
+def _body_topics(seen: Index) -> Sequence[Ends]:
     """Return the robots' topics for commands and for sensor data."""
     return [
         it
@@ -78,17 +78,18 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
         for mux in filter(chooses, nodes_of(ends.publishers)):
             for given in _velocities(seen):
                 readers = nodes_of(at_work(given.subscribers))
-                drivers = [it for it in readers if it != mux and _base(seen, it) not in LIMITS]
+                drivers = [it for it in readers if it != mux and _tail(seen, it) not in LIMITS]
                 if mux in readers and drivers and given.publishers:
                     yield limits_left_out.finding(
                         f"obeys {given.name}, an input of {mux}; no node reads its output {ends.name}",
-                        f"pass it the rule {_base(seen, given.name)}:={_base(seen, ends.name)}",
+                        f"pass it the rule {_tail(seen, given.name)}:={_tail(seen, ends.name)}",
                         robot=seen.robot(drivers[0]), node=drivers[0], names=(given.name, ends.name),
                         remaps=tuple(Remap(it, given.name, ends.name) for it in drivers),
                     )  # fmt: skip
 
 
-def _base(seen: Index, name: str) -> str:
+def _tail(seen: Index, name: str) -> str:
+    """Return the last word of a name without its robot's."""
     return last_word(seen.plain(name))
 
 
@@ -100,7 +101,7 @@ def _velocities(seen: Index) -> Iterator[Ends]:
 def data_in_a_circle(seen: Index) -> Iterator[Finding]:
     """Yield nodes that read what they send, alone or as a pair; bridges and joint states excepted."""
     passed: dict[tuple[str, str], tuple[str, Ends]] = {}
-    for node, (read, sent) in _passing(seen).items():
+    for node, (read, sent) in _passed_topics(seen).items():
         both = [it for it in read if it in sent]
         # With several it is a bridge, whatever it is called.
         for ends in both if len(both) == 1 else ():
@@ -122,7 +123,7 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _passing(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
+def _passed_topics(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
     """Return the command and sensor topics that each node reads and sends, for nodes that do both."""
     found: dict[str, tuple[list[Ends], list[Ends]]] = defaultdict(lambda: ([], []))
     for ends in seen.topics:
@@ -135,5 +136,5 @@ def _passing(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
     return {
         it: (read, sent)
         for it, (read, sent) in own.items()
-        if read[0].type == sent[0].type and not _BRIDGE.search(_base(seen, it))
+        if read[0].type == sent[0].type and not _BRIDGE.search(_tail(seen, it))
     }

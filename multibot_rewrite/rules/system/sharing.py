@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of what two have: one topic of several robots, a map or joint states twice, a device, a port
-or a file that only one process can open."""
+"""Dangers of sharing: a topic of several robots, two senders of a map, one device, port or file."""
 
 from __future__ import annotations
 
@@ -11,17 +10,16 @@ from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, names_another
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import NO_NAMESPACE, Ends, Index, at_work, nodes_of, robots_of
-from multibot_rewrite.system.records import COMPUTER, PUBLISHES, SUBSCRIBES, Address, End
+from multibot_rewrite.system.records import COMPUTER, PUBLISHES, SUBSCRIBES, TOPIC, Address, End
 from multibot_rewrite.system.words import is_viewer, last_word
 
 
 def own_names(seen: Index, ends: Ends, robots: Sequence[str]) -> Cause:
-    """Return how each robot gets a topic of its own in place of one that they share; where a node of no
-    robot sends it, no remap rule gives each robot a sender."""
+    """Return how each robot gets a topic of its own in place of one that they share."""
     outside = [] if NO_NAMESPACE in robots else outsiders(seen, ends.publishers)
     if outside:
         one = "start one" if len(outside) == 1 else "start them"
@@ -124,14 +122,21 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
             message = f"publishes on {ends.name} as {other} does"
             cause = "joint_state_publisher is for a robot without hardware or simulator: stop it"
             yield joint_states_twice.finding(
-                message, cause, robot=seen.robot(ends.name), node=made_up[0], names=(ends.name,)
-            )
+                message, cause, level=ERROR if is_planned_with(seen, ends.name) else WARNING,
+                robot=seen.robot(ends.name), node=made_up[0], names=(ends.name,),
+            )  # fmt: skip
+
+
+def is_planned_with(seen: Index, topic: str) -> bool:
+    """Return whether joint states come to MoveIt, which plans as if an unknown joint were at its
+    default (planning_scene_monitor.cpp updateSceneWithCurrentState)."""
+    readers = nodes_of(seen.ends_at(TOPIC, topic).subscribers)
+    return any(last_word(it).startswith("move_group") for it in readers)
 
 
 @system_rule("MG325", "sensor-twice", ERROR, meant=(PUBLISHES,))
 def sensor_twice(seen: Index) -> Iterator[Finding]:
-    """Yield sensor topics with two publishers. Played bags are no fault, nor are relays and bridges
-    in both directions, which read what they send."""
+    """Yield sensor topics with two publishers, other than played bags, relays and bridges."""
     for ends in seen.topics:
         described = last_word(ends.name) == words.DESCRIPTION
         if len(ends.publishers) < 2 or not (described or words.is_of_one_sensor(ends.type)):
@@ -171,9 +176,9 @@ def _one_device(seen: Index) -> Iterator[Finding]:
     for (kind, node, other_node), pairs in met.items():
         given = ", ".join(f"{it.name} {it.value}" for _, it in pairs)
         yield one_device.finding(
-            f"has the same as {other_node}: {given}", _ADVICE[kind] + see(pairs[0]),
+            f"has the same as {other_node}: {given}", _ADVICE[kind] + see_all(pairs[0]),
             level=NOTE if kind == COMPUTER else WARNING,
-            robot=seen.robot(node), node=node, names=(other_node,), **where(pairs[0]),
+            robot=seen.robot(node), node=node, names=(other_node,), **last_place(pairs[0]),
         )  # fmt: skip
 
 

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of nodes: two of one name, two managers of one node; of states, which nodes were asked
-for: life cycle, controllers, clocks by parameter; of ros2_control and MoveIt: an interface that is
-claimed and not exported, or claimed twice.
+"""Dangers of nodes: two of one name, states, managers, controllers and their interfaces, clocks.
 
 Source: ros2_control controller_manager.cpp (a controller whose interfaces do not exist is not
 activated; a command interface has one owner) and its chaining: a controller's own interfaces are
-called ``CONTROLLER/...``.
-"""
+called ``CONTROLLER/...``."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -18,7 +15,7 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.wording import SEVERAL, and_then, shorten
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, to_set
 from multibot_rewrite.rules.system.clocks import mixed_clocks, planned_clocks
 from multibot_rewrite.rules.system.names import not_managed
@@ -42,8 +39,7 @@ ACTIVE, INACTIVE = "active", "--inactive"
 
 @system_rule("MG511", "not-active", ERROR)
 def not_active(seen: Index) -> Iterator[Finding]:
-    """Report nodes of a robot that are in one state and have one manager as one finding. A plan may
-    have another state for a node."""
+    """Report nodes in another state than planned, or not active, those of one manager as one."""
     planned = seen.expected.system.nodes if seen.expected else ()
     states = {it.name: it.lifecycle for it in planned if it.lifecycle}
     found: dict[tuple[str, str, str, str], list[str]] = defaultdict(list)
@@ -106,8 +102,8 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
             claimed = (it for it in seen.system.interfaces if (it.role, it.kind, it.name) == wanted)
             places = [it for it in claimed if last_word(it.node) in own]
             yield interface_commanded_twice.finding(
-                message, cause + see(places), settings=settings,
-                robot=robot, node=found[0].manager, names=(interface,), **where(places),
+                message, cause + see_all(places), settings=settings,
+                robot=robot, node=found[0].manager, names=(interface,), **last_place(places),
             )  # fmt: skip
 
 
@@ -127,8 +123,7 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG514", "use-sim-time-differs", WARNING)
 def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
-    """Yield robots' nodes with other clocks; tools and bridges have the machine's time with any
-    robot. MG503 says it of a whole robot, and of planned parameters ``parameter_not_planned``."""
+    """Yield robots' nodes with other clocks; tools and bridges may have the machine's time."""
     told, planned = {it.robot for it in mixed_clocks(seen)}, planned_clocks(seen)
     by_robot: dict[str, dict[bool, list[str]]] = defaultdict(lambda: defaultdict(list))
     for node, simulated in clocks(seen.system).items():
@@ -214,6 +209,7 @@ def managed_twice(seen: Index) -> Iterator[Finding]:
 
 
 def _asks_for_a_person(seen: Index, node: str) -> bool:
+    """Return whether a node changes states as a person wants it."""
     return is_viewer(node) or is_tool(seen.plain(node))
 
 
@@ -223,8 +219,9 @@ _WORDS = {JOINT: ("plans for", "", "no controller of MoveIt moves")}
 
 
 class Missing(NamedTuple):
-    """What a controller claims at one place and no hardware exports; ``near`` is what may be ``meant``,
-    or another interface of the same joint, sensor or gpio."""
+    """What a controller claims at one place and no hardware exports.
+
+    ``near`` is what may be ``meant``, or another interface of the same joint, sensor or gpio."""
 
     claims: tuple[Interface, ...]
     near: Interface | None
@@ -243,9 +240,9 @@ def _not_exported(seen: Index) -> Iterator[Finding]:
             cause = f"did you mean {it.meant}" if it.meant else "name one that is there"
             yield interface_not_exported.finding(
                 f"{does} {first.kind}{needed} {first.name}{also}, which {gives}",
-                cause + see((*near, first)),
+                cause + see_all((*near, first)),
                 level=NOTE if first.kind == JOINT else WARNING,
-                robot=robot, node=first.node, names=(first.name,), **where([first]),
+                robot=robot, node=first.node, names=(first.name,), **last_place([first]),
             )  # fmt: skip
 
 
@@ -278,8 +275,7 @@ def missing_message(it: Missing, shown: Callable[..., str] | None) -> tuple[str,
 
 
 def open_claims(known: Sequence[Interface]) -> list[Interface]:
-    """Return the claims that nothing exports. A controller may claim interfaces of another one,
-    which may have a sensor's name."""
+    """Return the claims that nothing exports, without those of another controller's interfaces."""
     exports = {(it.kind, it.name) for it in known if it.role == EXPORTS}
     given = {kind == JOINT for kind, _ in exports}
     claims = [it for it in known if it.role == CLAIMS]
@@ -307,8 +303,8 @@ def _claimed_twice(seen: Index) -> Iterator[Finding]:
     """Report command interfaces that one controller claims by two parameters."""
     for other, it in claimed_twice(seen.system.interfaces):
         yield interface_claimed_twice.finding(
-            f"claims {it.name} by two parameters", f"name another joint{see((other, it))}",
-            robot=seen.robot(it.node), node=it.node, names=(it.name,), **where([it]),
+            f"claims {it.name} by two parameters", f"name another joint{see_all((other, it))}",
+            robot=seen.robot(it.node), node=it.node, names=(it.name,), **last_place([it]),
         )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import only, unique
-from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import to_set
 from multibot_rewrite.rules.system.planned_frames import misnamed
 from multibot_rewrite.rules.system.tf_trees import (
@@ -43,8 +43,7 @@ _COMPARED = 20_000
 
 @system_rule("MG406", "tf-tree-in-pieces", ERROR, absence=True)
 def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
-    """Report it by the frames of a plan, and by the usual names of frames (REP 105): other pieces
-    may be intended. A robot with a plan is checked by the plan alone."""
+    """Report trees in pieces by the frames of a plan, else by the usual ones (REP 105)."""
     plan, told = seen.expected, set()
     others = misnamed(plan, seen) if plan else ()
     for robot, roots in roots_by_robot(plan, seen) if plan else ():
@@ -68,6 +67,7 @@ def _by_usual_names(seen: Index) -> Iterator[Finding]:
 
 
 def _by_frames(seen: Index) -> Iterator[Finding]:
+    """Report misspelt frames, and odometry that nothing joins with the base."""
     yield from _misspelled(seen)
     for tree in seen.trees:
         yield from _odometry_apart(seen, tree)
@@ -101,11 +101,10 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
 
 
 def _misspelled(seen: Index) -> Iterator[Finding]:
-    """Yield misspelt frames: a parent that nothing sends and that is nearly a sent frame, or a sent
-    frame with nothing below it that is nearly a root."""
+    """Yield misspelt frames: a parent nearly a sent frame, or a leaf nearly a root."""
     for tree in seen.trees:
         children, parents = ({getattr(it, end) for it in tree.edges} for end in ("child", "parent"))
-        near_sent, near_root = _near(seen, children), _near(seen, parents - children)
+        near_sent, near_root = _near_frames(seen, children), _near_frames(seen, parents - children)
         above = above_each(tree)
         for it in tree.edges:
             usual = seen.plain_frame(it.parent) in (*USUAL_FRAMES, *SENT_FRAMES)
@@ -121,9 +120,8 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
                 yield _misspelt_frame(seen, tree, it, near, (root_of(it.child, above), near), why)
 
 
-def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
-    """Return a function: the frame, among some, that another one may be meant for, except one: of
-    its robot, or of none; of very many frames of a robot the last ones are not compared."""
+def _near_frames(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
+    """Return a function: of the robot's frames and those of none the one nearly called so, or ""."""
     own = sets_by_key((seen.frame_robot(it), it) for it in frames)
     left: dict[str, int] = defaultdict(lambda: _COMPARED)
 
@@ -145,10 +143,10 @@ def _near_frame(name: str, others: Collection[str]) -> str:
     """Return the frame with nearly this name; names that differ in numbers alone are two things."""
     near = nearest(name, sorted(others), MISTYPED)
     slip = near and near not in name and name not in near and not differ_in_numbers(name, near)
-    return near if slip and nearest(*_unlike(name, near), MISTYPED) else ""
+    return near if slip and nearest(*_differing_words(name, near), MISTYPED) else ""
 
 
-def _unlike(name: str, other: str) -> tuple[str, list[str]]:
+def _differing_words(name: str, other: str) -> tuple[str, list[str]]:
     """Return two names without the words that both begin and end with: a prefix makes all alike."""
     one, two = (re.split(r"[/_]", it) for it in (name, other))
     while one and two and one[0] == two[0]:
@@ -193,15 +191,14 @@ def forbidden_transforms(seen: Index) -> Iterator[Finding]:
             cause += f"; {beside.publishers[0]} ({beside.place}) sends {beside.child}"
         yield tf_tree_in_pieces.finding(
             f"is set not to send {first.parent} -> {child}, which no node sends{also}",
-            cause + see((*more, first)), level=ERROR if more else WARNING,
+            cause + see_all((*more, first)), level=ERROR if more else WARNING,
             robot=seen.robot(node), node=node, names=(child,), settings=told.settings,
-            **where([first]),
+            **last_place([first]),
         )  # fmt: skip
 
 
 def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
-    """Report nodes whose transforms are in another tree than those of the robot's first node. If no
-    node sends the root of the description, an unknown driver may: that joins the two."""
+    """Report nodes whose transforms are in another tree than those of the robot's first node."""
     for robot in unique(seen.robot(node) for it in tree.edges for node in it.publishers[:1]):
         edges = [it for it in tree.edges if {*map(seen.robot, it.publishers)} == {robot}]
         moving = {it.publishers: it for it in edges[::-1] if not is_of_description(seen, it)}
@@ -210,7 +207,7 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
         first, *others = [*moving.values()][::-1]
         children = {it.child for it in edges}
         roots = {it.parent for it in edges if is_of_description(seen, it)} - children
-        joined = _joined(
+        joined = _joined_groups(
             [*((it.parent, it.child) for it in edges), *((first.parent, it) for it in roots)]
         )
         for it in others:
@@ -220,17 +217,13 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
                 )
                 cause = "use the same odometry frame in both, or add what joins them"
                 yield tf_tree_in_pieces.finding(
-                    f"{message} of {first.publishers[0]}", cause + see((first, it)), level=WARNING,
-                    robot=robot, node=it.publishers[0], names=(it.child,), **where([it]),
+                    f"{message} of {first.publishers[0]}", cause + see_all((first, it)), level=WARNING,
+                    robot=robot, node=it.publishers[0], names=(it.child,), **last_place([it]),
                 )  # fmt: skip
 
 
 def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
-    """Return whether all of a tree in pieces is in the launch file. For a robot that is not
-    ``moved`` by a plugin in a simulator a driver that is started apart may send the odometry, and
-    what is sent on another topic of the robot somebody may bring to its tree; pieces without the
-    usual frames may be meant. Where a build's start pose places the robot, nothing localizes it; a
-    misspelt frame of it is sure."""
+    """Return whether a tree is in pieces for certain: nothing outside the launch file may join it."""
     loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
     own = (it for it in seen.nodes if seen.robot(it) == found.robot)
     misspelt = {(it.robot, it.names) for it in _misspelled(seen)}
@@ -248,7 +241,7 @@ def is_of_description(seen: Index, edge: Edge) -> bool:
     return any(seen.publishes_description(it) for it in edge.publishers)
 
 
-def _joined(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:
+def _joined_groups(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:
     """Return a function: for a frame one that represents all that are joined with it."""
     above: dict[str, str] = {}
 

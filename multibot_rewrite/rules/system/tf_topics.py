@@ -28,9 +28,7 @@ _REMAP = "/tf:=tf and /tf_static:=tf_static"
 
 @system_rule("MG405", "tf-on-two-topics", ERROR, drawn="leak")
 def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
-    """Report it unless the odd topic is another robot's: then that robot's tree is disturbed. A
-    topic not called tf, such as a simulator's ground truth, is no robot's tree; nor is one in its
-    namespace on which only nodes send that also send to the robot's tree."""
+    """Report nodes that send or hear tf on another topic than their robot's, unless that is meant."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in _called_tf(seen):
@@ -44,7 +42,7 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
     known = (it for it in listeners if it in seen.home)
     for robot in unique((*senders, *known)):
         topics = senders.get(robot, {})
-        home = _home(seen, robot, topics)
+        home = _tf_topic_of(seen, robot, topics)
         others = (it for it in topics if it != home and it not in mixed)
         odd = [it for it in others if not _is_own_topic(seen, robot, topics, it)]
         yield from (_tf_on_other_topic(seen, robot, home, it, topics[it], "send") for it in odd)
@@ -82,8 +80,7 @@ def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
 def _frames_of_another(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
-    """Report one robot's frames on another one's topic: from any sender, if the topic is the
-    other's by the plan; otherwise if the sender is unknown."""
+    """Report a robot's frames on another one's topic; without a plan only of unknown senders."""
     for tree in _called_tf(seen):
         home = home_of(seen.expected, tree) if seen.expected else ()
         owners = home or [it for it in (seen.robot(tree.topic),) if it]
@@ -111,8 +108,7 @@ def _frames_of_another(
 
 
 def _is_of_its_tree(seen: Index, _: Tree, edge: Edge) -> bool:
-    """Return whether it is between frames of one robot, or what that sends by the plan. What is
-    below another robot's frame is where that one sees it."""
+    """Return whether it is between frames of one robot, or what a node sends by the plan."""
     one = seen.frame_robot(edge.child) == seen.frame_robot(edge.parent)
     return one or (edge.parent, edge.child) in seen.senders
 
@@ -142,9 +138,7 @@ def _is_relayed(seen: Index, tree: Tree, robot: str) -> bool:
 def _has_names_of(
     seen: Index, tree: Tree, owners: Sequence[str], robot: str, edges: Sequence[Edge]
 ) -> bool:
-    """Return whether the robot has all of it, and one whose topic it is lacks frames of its own,
-    while its nodes run. Then these have the names of the robot, and a frame that is not received is
-    the finding."""
+    """Return whether a topic's own robot lacks frames, as its nodes have the names of another one."""
     plan, children = seen.expected, by_child(seen).get(seen.home.get(robot, ""), {})
     if not plan or not seen.nodes or any(it.child not in children for it in edges):
         return False
@@ -155,19 +149,17 @@ def _has_names_of(
 def _frames_on_foreign_topic(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
-    """Yield a robot's frames on a topic of none of its nodes, from a node of no robot. A node that
-    hears the robot's tree may be a relay; an unknown node may pass on the rest. Without a known
-    sender only a plan says where frames belong."""
+    """Yield a robot's frames on a topic of none of its nodes, sent by a node of no robot."""
     level = WARNING if incomplete(seen.system) else ERROR
     trees = {it.topic: it for it in seen.trees}
     elsewhere = taken_elsewhere(seen.expected) if seen.expected else ()
     for tree in (it for it in _called_tf(seen) if it.topic not in elsewhere):
         found: dict[str, list[Edge]] = defaultdict(list)
         for it in tree.edges if not seen.robot(tree.topic) else ():
-            for robot in _whose(seen, it):
+            for robot in _robots_of_transform(seen, it):
                 found[robot].append(it)
         for robot in (it for it in found if it in senders or it in seen.home):
-            home = _home(seen, robot, senders.get(robot, {}))
+            home = _tf_topic_of(seen, robot, senders.get(robot, {}))
             own = trees.get(home, Tree(home, (), (), ()))
             children = by_child(seen).get(home, {})
             whole = len(found[robot]) > 1
@@ -183,9 +175,8 @@ def _frames_on_foreign_topic(
             )  # fmt: skip
 
 
-def _whose(seen: Index, edge: Edge) -> Sequence[str]:
-    """Return the robots that a transform belongs to. If it has no robot's name and no nodes are
-    known, these are the robots that have it by the plan and lack it."""
+def _robots_of_transform(seen: Index, edge: Edge) -> Sequence[str]:
+    """Return the robots of a transform: by its name, otherwise those that lack it by the plan."""
     robot, plan = seen.frame_robot(edge.child), seen.expected
     if robot:
         known = edge.publishers or robot in seen.home
@@ -197,9 +188,7 @@ def _whose(seen: Index, edge: Edge) -> Sequence[str]:
 
 
 def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whole: bool) -> bool:
-    """Return whether it is in the tree as well, without the robot's name if it is not the only one,
-    or sent by a node of a robot, or by one that reads the tree. ``children`` are those of the
-    tree."""
+    """Return whether a transform is in the robot's tree as well, or sent by a reader of it."""
     hears = any(seen.robot(it) or it in tree.listeners for it in edge.publishers)
     if not edge.publishers:
         return False
@@ -208,9 +197,8 @@ def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whol
 
 
 def _is_own_topic(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], topic: str) -> bool:
-    """Return whether it is in the robot's namespace, and only nodes send there that send to its
-    tree as well, or bridges of a simulator. A row of these names the topic, so it is meant."""
-    at_home = topics.get(_home(seen, robot, topics), ())
+    """Return whether it is in the robot's namespace, and only its own nodes or bridges send."""
+    at_home = topics.get(_tf_topic_of(seen, robot, topics), ())
     others = (it for it in topics[topic] if it not in at_home and _BRIDGE not in last_word(it))
     bridge = f"ros_gz{_BRIDGE}"
     return seen.robot(topic) == robot and all(seen.node[it].known == bridge for it in others)
@@ -223,9 +211,8 @@ def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
     return topic != seen.home.get(seen.robot(node)) and any(it in known for it in keys)
 
 
-def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
-    """Return a robot's tf topic: the known one, its own, or the one where most of its nodes send, which
-    counts before its own where those of other robots send, too, and its frames have its name."""
+def _tf_topic_of(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
+    """Return a robot's tf topic: the known one, its own, or where most of its nodes send."""
     if robot in seen.home:
         return seen.home[robot]
     most = max(topics, key=lambda it: len(topics[it]))

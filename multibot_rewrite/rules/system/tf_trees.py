@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The transforms on a tf topic and its tf_static: whose they are by a plan, and where they begin; and
-why planned ones are not sent: a node that does not run, nothing to send it of, another robot's
-description or parameters. A transform itself does not say who sends it."""
+"""The transforms on a tf topic and its tf_static: whose they are, and why planned ones are not sent."""
 
 from __future__ import annotations
 
@@ -158,13 +156,13 @@ def why_not_received(
     plan: Index, seen: Index, robot: Robot, frames: Sequence[str], undescribed: bool
 ) -> str:
     """Return why planned frames are in no transform; ``undescribed``: none of the description's is."""
-    theirs, name = [*foreign(plan, seen, robot)], robot.name
+    theirs, name = [*foreign_transforms(plan, seen, robot)], robot.name
     publisher = state_publisher(plan, robot) or STATE_PUBLISHER
     described = "no planned node publishes its description: is the node that does it running?"
     if is_described(plan, robot):
         described = f"has {publisher} the description of {name}, or that of another robot?"
     causes = (
-        _silent(plan, seen, robot, words.JOINTS),
+        _why_silent(plan, seen, robot, words.JOINTS),
         *(
             f"{publisher} has the description of {other}, whose transforms it sends"
             for other, edge in theirs
@@ -194,13 +192,13 @@ def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str
     named = _two_names(plan, robot, roots, edges) or _misspelled(plan, robot, roots, edges)
     if named or unsent:
         return named or _not_sent(plan, seen, robot, unsent[0])
-    bridged = _bridged(plan, seen, robot)
+    bridged = _bridge_hint(plan, seen, robot)
     causes = (
-        _silent(plan, seen, robot, TF, bridged_alone=True),
-        _silent(plan, seen, robot, words.JOINTS, bridged_alone=True),
-        _silent(plan, seen, robot, TF),
-        "" if bridged else _no_odometry(seen, robot, roots),
-        _silent(plan, seen, robot, words.JOINTS),
+        _why_silent(plan, seen, robot, TF, bridged_alone=True),
+        _why_silent(plan, seen, robot, words.JOINTS, bridged_alone=True),
+        _why_silent(plan, seen, robot, TF),
+        "" if bridged else _odometry_hint(seen, robot, roots),
+        _why_silent(plan, seen, robot, words.JOINTS),
         bridged,
         "a transform between them is missing: joint states of a moving joint, odometry or localization",
     )
@@ -253,7 +251,11 @@ def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
         return tuple(plan.of_frames.without_robot(it, whose) for it in (parent, child))
 
     wanted = plain(planned.parent, planned.child, robot.name)
-    alike = (it for it, e in foreign(plan, seen, robot) if plain(e.parent, e.child, it) == wanted)
+    alike = (
+        it
+        for it, e in foreign_transforms(plan, seen, robot)
+        if plain(e.parent, e.child, it) == wanted
+    )
     whose = next(alike, "")
     which = f"it has the parameters of {whose}" if whose else "has it those of another robot?"
     return caused(
@@ -262,17 +264,15 @@ def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
     )
 
 
-def foreign(plan: Index, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
-    """Yield transforms of other robots, each with its robot, that a node of this one may send: all
-    on a tf topic of its own, otherwise those that several nodes send."""
-    found = _named(plan, seen).get(tree_topic(robot.tf_topic), ())
+def foreign_transforms(plan: Index, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
+    """Yield transforms of other robots that a node of this one may send, each with its robot."""
+    found = _transforms_of_robots(plan, seen).get(tree_topic(robot.tf_topic), ())
     return (it for it in found if it[0] != robot.name)
 
 
 @once
-def _named(plan: Index, seen: Index) -> Mapping[str, Sequence[tuple[str, Edge]]]:
-    """Return by topic the transforms that have a robot's name, each with that robot, on one robot's
-    tf topic; on a shared one only those that several nodes send."""
+def _transforms_of_robots(plan: Index, seen: Index) -> Mapping[str, Sequence[tuple[str, Edge]]]:
+    """Return by topic the transforms with a robot's name that another robot's node may send."""
     found: dict[str, list[tuple[str, Edge]]] = defaultdict(list)
     for tree in seen.trees:
         is_of_one = len(home_of(plan, tree)) == 1
@@ -282,7 +282,7 @@ def _named(plan: Index, seen: Index) -> Mapping[str, Sequence[tuple[str, Edge]]]
     return found
 
 
-def _no_odometry(seen: Index, robot: Robot, roots: Sequence[str]) -> str:
+def _odometry_hint(seen: Index, robot: Robot, roots: Sequence[str]) -> str:
     """Return a cause if one of two roots is an odometry frame without anything below it."""
     for odom, root in loose_odometry(seen) if len(roots) == 2 else ():
         if root in roots and seen.frame_robot(odom) in ("", robot.name):
@@ -291,7 +291,7 @@ def _no_odometry(seen: Index, robot: Robot, roots: Sequence[str]) -> str:
     return ""
 
 
-def _bridged(plan: Index, seen: Index, robot: Robot) -> str:
+def _bridge_hint(plan: Index, seen: Index, robot: Robot) -> str:
     """Return the hint about odometry of a simulated robot that comes over a bridge; empty without."""
     carried = [it for it in plan.system.topics if it.bridge and it.name == robot.tf_topic]
     ends = ends_of(seen, robot.tf_topic) if carried else ()
@@ -304,7 +304,9 @@ def _bridged(plan: Index, seen: Index, robot: Robot) -> str:
     )
 
 
-def _silent(plan: Index, seen: Index, robot: Robot, type_: str, bridged_alone: bool = False) -> str:
+def _why_silent(
+    plan: Index, seen: Index, robot: Robot, type_: str, bridged_alone: bool = False
+) -> str:
     """Return why a topic is silent that the robot's nodes read, or a bridge has to publish."""
     silent = min(silent_topics(plan, seen, robot, type_), default="")
     if silent and any(it.bridge and it.name == silent for it in plan.system.topics):

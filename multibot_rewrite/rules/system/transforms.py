@@ -17,7 +17,7 @@ from multibot_rewrite.base.conventions import (
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
-from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, to_set
 from multibot_rewrite.rules.system.planned_frames import with_more_names
 from multibot_rewrite.system import words
@@ -39,31 +39,31 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
     """Yield frames with two parents; the cause names the nodes that may have sent them."""
     for tree in seen.trees:
         edges = lists_by_key((edge.child, edge) for edge in tree.edges)
-        for child, parents in _parents(tree).items():
+        for child, parents in _parents_by_child(tree).items():
             if len(parents) < 2:
                 continue
             both = and_then(sorted(parents))
             message = f"frame {child} has {len(parents)} parents on {tree.topic}: {both}"
             own = edges[child]
-            robot = seen.frame_robot(child) or only(robots_of(seen, _senders(tree, own)))
-            senders = _senders(tree, own)
-            cause = _who_sends(seen, tree, [(it, child) for it in sorted(parents)], senders)
-            cause += see(own)
+            robot = seen.frame_robot(child) or only(robots_of(seen, _senders_of(tree, own)))
+            senders = _senders_of(tree, own)
+            cause = _senders_text(seen, tree, [(it, child) for it in sorted(parents)], senders)
+            cause += see_all(own)
             yield frame_with_two_parents.finding(
-                message, cause, robot=robot, names=(child,), **where(own)
+                message, cause, robot=robot, names=(child,), **last_place(own)
             )
 
 
-def _parents(tree: Tree) -> dict[str, set[str]]:
+def _parents_by_child(tree: Tree) -> dict[str, set[str]]:
     return sets_by_key((edge.child, edge.parent) for edge in tree.edges)
 
 
-def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
+def _senders_of(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
     """Return the nodes that send these transforms, or all senders on the topic if unknown."""
     return unique(node for it in edges for node in it.publishers) or tree.senders
 
 
-def _who_sends(
+def _senders_text(
     seen: Index, tree: Tree, edges: Sequence[tuple[str, str]], senders: Sequence[str]
 ) -> str:
     """Return the possible senders of these transforms: known ones first, then the frame's robot."""
@@ -94,7 +94,7 @@ def robots_frames_collide(seen: Index) -> Iterator[Finding]:
         if who:
             bare = _bare_frames(seen, tree)
             message = f"{who} on {tree.topic}: {shorten(bare, SEVERAL)}"
-            cause = _apart(seen, tree, robots_of(seen, tree.senders))
+            cause = _how_to_part(seen, tree, robots_of(seen, tree.senders))
             yield robots_frames_collide.finding(
                 message, **cause._asdict(), names=(*bare, tree.topic)
             )
@@ -105,7 +105,7 @@ def collide(seen: Index, tree: Tree) -> str:
     senders = [it for it in tree.senders if it not in seen.relays]
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
-    if bare and not seen.robot(tree.topic) and _may_meet(seen, tree):
+    if bare and not seen.robot(tree.topic) and _may_collide(seen, tree):
         named = sets_by_key(
             (seen.frame_robot(it.child), seen.plain_frame(it.child)) for it in tree.edges
         )
@@ -125,7 +125,7 @@ def collide(seen: Index, tree: Tree) -> str:
     return ""
 
 
-def _may_meet(seen: Index, tree: Tree) -> bool:
+def _may_collide(seen: Index, tree: Tree) -> bool:
     """Return whether two robots may have one frame here, also by nodes with unknown frames."""
     owners: dict[str, set[str]] = defaultdict(set)
     for edge in tree.edges:
@@ -137,6 +137,7 @@ def _may_meet(seen: Index, tree: Tree) -> bool:
 
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
+    """Return the frames of a tree without a robot's name, those of several robots first."""
     met = (it.parent for it in tree.edges if _is_of_several(seen, it))
     frames = unique((*met, *(edge.child for edge in tree.edges)))
     return [it for it in frames if not seen.frame_robot(it) and it not in WORLD_FRAMES]
@@ -153,7 +154,7 @@ def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
     return (it for it in frames if seen.frame_robot(it))
 
 
-def _apart(seen: Index, tree: Tree, robots: Sequence[str]) -> Cause:
+def _how_to_part(seen: Index, tree: Tree, robots: Sequence[str]) -> Cause:
     """Return how robots' frames on one topic get apart: by names if some have them, else by topics."""
     senders = f"the senders are {shorten(tree.senders, SEVERAL)}"
     named = "put the robot's name into these frames (urdf-postfix; a node's in its parameters)"
@@ -186,7 +187,7 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
     """Report each circle once."""
     for tree in seen.trees:
         edges = lists_by_key((edge.child, edge) for edge in tree.edges)
-        for circle in _circles(_parents(tree)):
+        for circle in _circles(_parents_by_child(tree)):
             around = [*pairwise((*circle, circle[0]))]
             way = " -> ".join((*circle, circle[0]))
             message = f"the transforms on {tree.topic} go round in a circle: {way}"
@@ -194,7 +195,7 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
             robot = only(robots) or only(robots_of(seen, tree.senders))
             yield tf_cycle.finding(
                 message,
-                _who_sends(seen, tree, around, _senders(tree, edges[around[0][1]])),
+                _senders_text(seen, tree, around, _senders_of(tree, edges[around[0][1]])),
                 robot=robot,
                 names=circle,
             )
@@ -235,7 +236,7 @@ def _take_away(
 def static_and_moving(seen: Index) -> Iterator[Finding]:
     """Yield transforms that are sent as static and as moving; two parents are another finding."""
     for tree in seen.trees:
-        several = {child for child, parents in _parents(tree).items() if len(parents) > 1}
+        several = {child for child, parents in _parents_by_child(tree).items() if len(parents) > 1}
         fixed = {it.child: it for it in tree.edges if "tf_static" in it.topic.split("/")}
         for edge in tree.edges:
             other = fixed.get(edge.child)
@@ -263,7 +264,7 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
         for robot, own in by_robot.items():
             listed = shorten(unique(f"{it.parent} -> {it.child}" for it in own))
             message = f"several nodes send {listed} on {tree.topic}"
-            senders = _senders(tree, own)
+            senders = _senders_of(tree, own)
             who = robot or only(robots_of(seen, senders))
             nodes = [it for it in senders if seen.robot(it) in ("", who)] or senders
             nodes = who_can_send(seen, nodes, own)
@@ -281,8 +282,8 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             # Static and of one value: where senders differ none is known.
             is_fixed = all(it.static and it.transform for it in own)
             yield transform_of_two_senders.finding(
-                message, cause + see(own), level=NOTE if is_fixed else ERROR,
-                robot=who, names=unique(it.child for it in own), **where(own),
+                message, cause + see_all(own), level=NOTE if is_fixed else ERROR,
+                robot=who, names=unique(it.child for it in own), **last_place(own),
                 settings=() if is_fixed else off.settings,
             )  # fmt: skip
 
@@ -309,7 +310,7 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
             verb = "has" if len(frames) == 1 else "have"
             message = f"{shorten(frames)} {verb} the name of {robot} twice"
             sent = [it for it in tree.edges if it.child in frames or it.parent in frames]
-            cause = _without_prefix(_senders(tree, sent))
+            cause = _without_prefix(_senders_of(tree, sent))
             yield robots_name_twice.finding(
                 message, **cause._asdict(), robot=robot, names=tuple(frames)
             )
@@ -329,28 +330,26 @@ def _without_prefix(nodes: Iterable[str]) -> Cause:
 
 
 def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:
-    """Return the nodes that can send one of these transforms, below the map those that see where it is;
-    all if fewer than two are left."""
+    """Return the nodes that can send one of these transforms; all if fewer than two are left."""
     found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
     if all(seen.plain_frame(it.parent) in WORLD_FRAMES for it in edges):
-        seeing = [it for it in found if any(end.type in _SEEN for end in _read(seen, it))]
+        seeing = [it for it in found if any(end.type in _SEEN for end in _subscriptions(seen, it))]
         found = seeing if len(seeing) > 1 else found
     return found if len(found) > 1 else nodes
 
 
-def _read(seen: Index, node: str) -> Sequence[End]:
+def _subscriptions(seen: Index, node: str) -> Sequence[End]:
     return [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:
-    """Return whether a node can send a transform: a description has no odometry, amcl (it reads a
-    start pose) sends only map -> odom, a drive sends nothing below the map."""
+    """Return whether a node can send a transform, by its name and what it reads."""
     above, word = seen.plain_frame(edge.parent), last_word(node)
     if word.startswith(_STATE_PUBLISHER):
         return above not in SENT_FRAMES
     if word.startswith(_STATIC):
         return edge.static
-    read = _read(seen, node)
+    read = _subscriptions(seen, node)
     if any(words.is_start_pose(seen.plain(it.name), it.type) for it in read):
         return above in WORLD_FRAMES
     drives = any(words.moves(it.name, it.type) for it in read)

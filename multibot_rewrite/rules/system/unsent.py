@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of what is not there: an end whose node's code or parameters name it, a frame or a
-transform that nodes ask tf for, and nothing sends.
-"""
+"""Dangers of what nothing sends: an end, a frame or a transform that nodes ask for."""
 
 from __future__ import annotations
 
@@ -13,12 +11,13 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.rules.declaration import system_rule, where
+from multibot_rewrite.rules.declaration import last_place, system_rule
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
 from multibot_rewrite.rules.system.instead import is_needed, meant
 from multibot_rewrite.rules.system.likes import nodes_of_each
+from multibot_rewrite.rules.system.localized import map_not_joined
 from multibot_rewrite.rules.system.names import server_names_miss, topic_names_miss
-from multibot_rewrite.rules.system.tf_pieces import is_of_description
+from multibot_rewrite.rules.system.tf_pieces import is_of_description, tf_tree_in_pieces
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system.index import TF, Index, ends_of, once
 from multibot_rewrite.system.records import (
@@ -52,7 +51,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
         elsewhere: dict[str, str] = {}
         for name in sorted(names) if robot else ():
             given = _names_without_robot(seen).get(seen.plain(name), ())
-            if other := next((it for it in given if _of_its_kind(seen, it, robot)), ""):
+            if other := next((it for it in given if _is_of_like_robot(seen, it, robot)), ""):
                 elsewhere[name] = other
         if lacked := tuple(elsewhere):
             others = shorten(elsewhere.values(), _LISTED)
@@ -66,9 +65,8 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
             yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
 
 
-def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
-    """Return whether a name is of another robot that runs nothing which the robot has not, except
-    its sender, and of which the nodes that both have send the same frames."""
+def _is_of_like_robot(seen: Index, name: str, robot: str) -> bool:
+    """Return whether a name is of another robot that is alike except for the name's sender."""
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()
@@ -97,12 +95,26 @@ def _names_without_robot(seen: Index) -> Mapping[str, Sequence[str]]:
     )
 
 
+def is_for_driver(seen: Index, it: Finding) -> bool:
+    """Return whether the driver of a real robot may mend it: it places the link at which the tree is in
+    pieces, which no other node's parameters name, and sends what a localizer waits for and a usual
+    frame of the robot."""
+    if it.code == map_not_joined.code:
+        # With another name, a frame below the map is the wrong one.
+        return len(it.names) == 1
+    if it.code == frame_not_sent.code:
+        return seen.plain_frame(it.names[0]) in USUAL_FRAMES
+    edges = (one for one in seen.system.edges if not is_of_description(seen, one))
+    named = {frame for edge in edges for frame in (edge.parent, edge.child)}
+    return it.code == tf_tree_in_pieces.code and not (it.node or named >= {*it.names})
+
+
 def no_longer_sent(end: End) -> Finding:
     """Return the finding about one end that nothing sends any more."""
     does, gives = ("subscribes to", "publishes") if end.kind == TOPIC else ("calls", "serves")
     message = f"{does} {end.name}, which no node {gives} any more"
     return nothing_known_sends.finding(
-        message, level=ERROR, node=end.node, names=(end.name,), **where([end])
+        message, level=ERROR, node=end.node, names=(end.name,), **last_place([end])
     )
 
 
@@ -134,46 +146,51 @@ def frame_not_sent(seen: Index) -> Iterator[Finding]:
         readers.setdefault((robot, it.parent, it.frame), {}).setdefault(it.node, it)
     for (robot, *_), nodes in readers.items():
         it, *others = nodes.values()
-        found = _state(seen, it, sent[robot]) if it.parent else _read(seen, it, sent[robot])
+        found = (
+            _state_finding(seen, it, sent[robot])
+            if it.parent
+            else _usual_frame_finding(seen, it, sent[robot])
+        )
         if found:
             also = f"; the same for {', '.join(other.node for other in others)}" if others else ""
             yield found._replace(message=f"{found.message}{also}")
 
 
-def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+def _usual_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     plain = seen.plain_frame(it.frame)
     bare = it.frame.rpartition("/")[2]
     # Without a robot's name before it, it is sent.
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
-    sender = _sender(seen, it.node, edges) if usual else None
+    sender = _sent_transform(seen, it.node, edges) if usual else None
     # One that hears no transforms writes the frame into messages, or into what it sends.
     hears = any(end.type == TF and end.role == SUBSCRIBES for end in seen.by_node.get(it.node, ()))
     if sender is None and usual and edges and not seen.in_doubt and hears:
         message = f"reads frame {it.frame}, but no known node sends it"
-        return _finding(seen, it, message, "name the node or node set that sends it", NOTE)
+        return _lookup_finding(seen, it, message, "name the node or node set that sends it", NOTE)
     if sender is None:
-        return _unknown(seen, it, edges)
+        return _unknown_frame_finding(seen, it, edges)
     place = f" ({sender.place})" if sender.place != NOWHERE else ""
     who = next((it for it in sender.publishers if not seen.publishes_description(it)), "a node")
     sends = f"{who} sends {sender.parent} -> {sender.child}{place}"
     hint = f"{sends}; use a frame that is sent, or name the node that does"
     # A map often comes from a node that is started apart.
     level = NOTE if plain == "map" else WARNING
-    return _finding(seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level)
+    return _lookup_finding(
+        seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level
+    )
 
 
-def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+def _unknown_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     """Return a finding for an unknown frame: misspelled, or not sent in a running system; or None."""
     near = nearest(it.frame, sorted(frames_in(edges)), MISTYPED)
     if not near and (seen.system.environment.settled != QUIET or not edges):
         return None
     hint = f"did you mean {near}?" if near else "send it, or use a frame that is sent"
-    return _finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
+    return _lookup_finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
 
 
-def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
-    """Return a transform that a node sends by its file, preferably one of the robot of ``node``. It
-    is None if only nodes without a file are known and others may run."""
+def _sent_transform(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
+    """Return a transform that a node sends by its file, preferably one of the robot of ``node``."""
     # Of all that send on one topic nobody can tell them apart: a description has no odometry.
     own = [
         it
@@ -186,7 +203,7 @@ def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
     return min(found, key=lambda it: robot not in map(seen.robot, it.publishers), default=None)
 
 
-def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+def _state_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     above = {edge.child: edge.parent for edge in edges}
     if it.frame in above and it.parent in {*above, *above.values()}:
         return None
@@ -195,20 +212,24 @@ def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
         root = root_of(it.frame, above)
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.parent}"
         hint = f"start what sends {it.parent} -> {root}: localization, or odometry"
-        return _finding(seen, it, f"{message}: the tree begins with {root}", hint, WARNING)
+        return _lookup_finding(seen, it, f"{message}: the tree begins with {root}", hint, WARNING)
     frames = frames_in(edges)
     if near := "" if it.frame in frames else nearest(it.frame, sorted(frames), MISTYPED):
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.frame}"
-        return _finding(seen, it, message, f"did you mean {near}?", WARNING)
+        return _lookup_finding(seen, it, message, f"did you mean {near}?", WARNING)
     message = (
         f"has the transform {it.parent} -> {it.frame} as its state, but no known node sends it"
     )
     hint = "name the node that sends it, or make the virtual joint fixed"
-    return _finding(seen, it, message, hint, NOTE)
+    return _lookup_finding(seen, it, message, hint, NOTE)
 
 
-def _finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
+def _lookup_finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
     return frame_not_sent.finding(
         message, hint, level=level,
-        robot=seen.robot(it.node), node=it.node, names=(it.frame,), **where([it]),
+        robot=seen.robot(it.node), node=it.node, names=(it.frame,), **last_place([it]),
     )  # fmt: skip
+
+
+# What is missing where the driver of a real robot, which no file names, may send it.
+FOR_DRIVERS = (tf_tree_in_pieces.code, map_not_joined.code, frame_not_sent.code)

@@ -69,19 +69,19 @@ def majority(found: Any, element: Any) -> Any:
 
 def without(*kinds: str) -> Callable[..., dict[str, str]]:
     """Return the kinds that are renamed, without some."""
-    right = naming._active
+    right = naming._active_separators
     return lambda *given: {k: it for k, it in right(*given).items() if k not in kinds}
 
 
 def unseen(path: str) -> Callable[[TreeNode, Any], None]:
     """Return a tree that has no place for the sites at a path."""
-    right = TreeNode._add
+    right = TreeNode._add_site
     return lambda node, site: None if site.path == path else right(node, site)
 
 
 FAULTS = {
-    "no default is inserted": Fault(insert, "_defaults", nothing, DRIVE % "", "frame 'odom'"),
-    "no namespace is inserted": Fault(insert, "_defaults", nothing, IMU % "", "node '/imu'"),
+    "no default is inserted": Fault(insert, "_of_defaults", nothing, DRIVE % "", "frame 'odom'"),
+    "no namespace is inserted": Fault(insert, "_of_defaults", nothing, IMU % "", "node '/imu'"),
     "no rule is inserted": Fault(insert, "_remaps", nothing, DRIVE % ODOM, "topic '/tf'"),
     "no rule is inserted for a wired topic": Fault(
         insert, "_remaps", nothing, DRIVE % ODOM, "topic '/odom'", "postfix"
@@ -131,15 +131,17 @@ FAULTS = {
         IMU % "<ros><namespace>/a</namespace></ros>",
         "node '/a/imu'",
     ),
-    "nodes stay": Fault(naming, "_active", without("node"), IMU % "", "node '/imu'", "postfix"),
+    "nodes stay": Fault(
+        naming, "_active_separators", without("node"), IMU % "", "node '/imu'", "postfix"
+    ),
     "frames stay": Fault(
         naming,
-        "_active",
+        "_active_separators",
         without("frame"),
         DRIVE % "<odometry_frame>o</odometry_frame>",
         "frame 'o'",
     ),
-    "links stay": Fault(naming, "_active", without("link"), "", "frame 'base'"),
+    "links stay": Fault(naming, "_active_separators", without("link"), "", "frame 'base'"),
     "a rule is not read": Fault(
         remap_rules,
         "remap",
@@ -149,14 +151,14 @@ FAULTS = {
     ),
     "a parameter has no place in the tree": Fault(
         TreeNode,
-        "_add",
+        "_add_site",
         unseen("topicName"),
         LASER % "<topicName>/scan</topicName>",
         "topic '/scan'",
     ),
     "a namespace has no place in the tree": Fault(
         TreeNode,
-        "_add",
+        "_add_site",
         unseen("ros/namespace"),
         IMU % "<ros><namespace>/a</namespace></ros>",
         "node '/a/imu'",
@@ -206,7 +208,7 @@ def test_the_second_reading_names_what_is_shared(
 # The release is chosen by tags.
 BY_TAGS = Fault(
     tree,
-    "_flavour",
+    "_by_ros",
     majority,
     IMU % "<ros/><topicName>imu</topicName><bodyName>base</bodyName>",
     "node '/imu'",

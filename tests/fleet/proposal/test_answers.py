@@ -79,10 +79,13 @@ def test_how_many_of_each_is_asked_until_it_is_a_number(asked: Any) -> None:
 def test_one_of_several_descriptions_is_named_by_its_number(asked: Any, capsys: Any) -> None:
     robots = [Looked("a.urdf", links=1), Looked("b.urdf", links=7)]
     questions = asked("2", "")
-    assert init._chosen(robots) == robots[1:] and init._chosen(robots) == robots[:1]
+    assert (
+        init._choose_description(robots) == robots[1:]
+        and init._choose_description(robots) == robots[:1]
+    )
     said = capsys.readouterr().err
     assert "1: a.urdf (1 link)" in said and "2: b.urdf (7 links)" in said
-    assert init._chosen(robots[1:]) == robots[1:] and len(questions) == 2
+    assert init._choose_description(robots[1:]) == robots[1:] and len(questions) == 2
 
 
 PATHS = ["a.yaml", "b.rviz", "c.srdf"]
@@ -106,13 +109,13 @@ def test_files_are_left_out_by_number(answers: list[str], left: list[str], asked
         SimpleNamespace(related_files=SimpleNamespace(paths=it)) for it in (PATHS, PATHS[:1])
     ]
     made: Any = SimpleNamespace(members=members)
-    assert init._left_out(made) == left
+    assert init._unwanted_files(made) == left
 
 
 def test_where_nothing_is_beside_nothing_is_asked(asked: Any) -> None:
     none = SimpleNamespace(related_files=SimpleNamespace(paths=()))
     made: Any = SimpleNamespace(members=[none])
-    assert (init._left_out(made), asked()) == ([], [])
+    assert (init._unwanted_files(made), asked()) == ([], [])
 
 
 @pytest.mark.parametrize(
@@ -130,7 +133,7 @@ def test_how_far_robots_are_apart(
 ) -> None:
     seen = asked(*answers)
     made: Any = SimpleNamespace(poses={at: {"y": it} for at, it in enumerate(places)})
-    assert init._apart(made) == metres
+    assert init._ask_distance(made) == metres
     assert seen == [("Metres from robot to robot", "1.5")] * questions
 
 
@@ -151,7 +154,7 @@ def test_another_layout_is_made_and_the_same_is_not(asked: Any, monkeypatch: Any
     made: Any = SimpleNamespace(keys={"layout": Choice("both", "tf has one topic")})
     monkeypatch.setattr(init, "in_layout", lambda _, choice: choice.value)
     questions = asked("", "postfix")
-    assert init._in_layout(made) is made and init._in_layout(made) == "postfix"
+    assert init._ask_layout(made) is made and init._ask_layout(made) == "postfix"
     assert questions[0] == ("Layout (tf has one topic)", "both")
 
 

@@ -395,7 +395,7 @@ def test_names_are_known_without_what_arguments_put_in_front(
     given: str, names: set[str], plain: set[str]
 ) -> None:
     robot = Looked("a.urdf.xacro", arguments=(("prefix", given),))
-    assert owners._plain(robot, frozenset(names)) == plain
+    assert owners._without_prefixes(robot, frozenset(names)) == plain
 
 
 def fit(names: str) -> Fitting:

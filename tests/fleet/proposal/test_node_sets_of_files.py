@@ -47,6 +47,6 @@ def test_the_nearest_file_is_the_first(here: Path) -> None:
         "zzz/rover.yaml", "zzz/a.yaml", "zzz/b.yaml", "zzz/named.yaml", "zzz/a_more_words.yaml",
     ]  # fmt: skip
     robot = Looked("own/rover.urdf", root=root)
-    assert related_files._nearest(robot, sorted(wanted, reverse=True)) == wanted
-    bare = related_files._nearest(Looked("own/rover.urdf"), sorted(wanted))
+    assert related_files._nearest_first(robot, sorted(wanted, reverse=True)) == wanted
+    bare = related_files._nearest_first(Looked("own/rover.urdf"), sorted(wanted))
     assert bare[:3] == ["own/rover.yaml", "own/named.yaml", "own/a_b_c.yaml"]

@@ -135,7 +135,7 @@ MADE = Proposal({}, [Member(Looked("w/r.urdf"), BESIDE, ("robot1",), 0.5)], {})
 )  # fmt: skip
 def test_the_file_that_has_an_error(file: str, line: str, blamed: tuple[str, str] | None) -> None:
     """A description is the robot itself."""
-    assert list(trying._blamed(MADE, [(file, line)])) == ([blamed] if blamed else [])
+    assert list(trying._faulty_files(MADE, [(file, line)])) == ([blamed] if blamed else [])
 
 
 @pytest.mark.parametrize(

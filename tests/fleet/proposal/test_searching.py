@@ -166,7 +166,7 @@ def test_a_named_file_and_its_folder_have_one_answer(
     # Each is alone in its folder: no other file includes it.
     alone: list[str] = []
     monkeypatch.setattr(searching, "home_of", os.path.dirname)
-    monkeypatch.setattr(searching, "_files", lambda *_: alone)
+    monkeypatch.setattr(searching, "_candidates", lambda *_: alone)
     paths = [str(it) for it in sorted(home.rglob("*")) if it.name.endswith(ENDS)]
     for path in paths[:: max(1, len(paths) // 300)]:
         alone[:] = [path]

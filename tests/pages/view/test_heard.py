@@ -15,7 +15,7 @@ from view_pages import page, with_places
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.pages.view.models import Joint
-from multibot_rewrite.pages.view.scene import LinkFrames, apart, heard_trees, moved
+from multibot_rewrite.pages.view.scene import LinkFrames, heard_trees, moved_links, offset_between
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import Edge
 
@@ -74,7 +74,7 @@ def test_what_was_not_heard_has_no_place() -> None:
 def test_how_far_a_frame_is_off(heard: tuple[float, ...], metres: float, angle: float) -> None:
     pose = ((0, -1, 0, 1), (1, 0, 0, 2), (0, 0, 1, 3), (0, 0, 0, 1))
     joint = Joint("mast", "fixed", "base", "scan", pose, (1, 0, 0), 0, 0, None)
-    assert apart(joint, heard) == pytest.approx((metres, angle), abs=1e-6)
+    assert offset_between(joint, heard) == pytest.approx((metres, angle), abs=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -93,8 +93,8 @@ def test_how_far_a_frame_is_off(heard: tuple[float, ...], metres: float, angle: 
 def test_what_is_said_of_a_joint(kind: str, heard: tuple[float, ...], said: list[str]) -> None:
     pose = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
     joint = Joint("mast", kind, "base", "scan", pose, (1, 0, 0), 0, 0, None)
-    assert [*moved([joint], {"scan": heard, "other": TURNED})] == said
-    assert [*moved([joint], {})] == []
+    assert [*moved_links([joint], {"scan": heard, "other": TURNED})] == said
+    assert [*moved_links([joint], {})] == []
 
 
 @pytest.mark.more

@@ -27,9 +27,10 @@ NO_COVERAGE: Mapping[str, object] = MappingProxyType({})
 
 
 class Report(NamedTuple):
-    """What a report says besides its findings: the command that made it, the files that were read,
-    all rules by code, the ROS 2 release whose facts it rests on, and how much of the robots it is
-    about (``Coverage.as_value``)."""
+    """What a report says besides its findings.
+
+    The command that made it, the files that were read, all rules by code, the ROS 2 release whose facts
+    it rests on, and how much of the robots it is about (``Coverage.as_value``)."""
 
     tool: str
     files: Sequence[str]

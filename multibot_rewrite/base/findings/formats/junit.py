@@ -23,8 +23,7 @@ _PASSED = "no findings"
 
 
 def as_junit(findings: Sequence[Finding], report: Report) -> str:
-    """Return the findings as JUnit XML: errors and warnings are failures, what is inconclusive is
-    skipped; a note passes, and so does a file without findings."""
+    """Return JUnit XML: errors and warnings fail, inconclusive ones are skipped, the rest passes."""
     suites = etree.Element("testsuites", {"name": report.tool, **_totals(findings, report)})
     for file, found in by_file(findings, report).items():
         path = one_line(path_below(file)) or "graph"

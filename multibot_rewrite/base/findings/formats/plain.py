@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The formats that are text or JSON, and what all formats need: text that no reader stumbles over,
-paths, identities that last."""
+"""The text and JSON formats, and what all formats need: escaped text, paths, lasting identities."""
 
 import os
 import re
@@ -107,10 +106,10 @@ def calls(finding: Finding) -> Iterator[MacroCall]:
         yield MacroCall(parts["file"], int(parts["line"]), parts["macro"])
 
 
-def via(finding: Finding, spelled: Callable[[str], str]) -> Iterator[str]:
-    """Yield a line for each macro call; ``spelled`` formats its path."""
+def via(finding: Finding, shown: Callable[[str], str]) -> Iterator[str]:
+    """Yield a line for each macro call; ``shown`` formats its path."""
     for call in calls(finding):
-        yield one_line(f"via {spelled(call.file)}:{call.line}: {call.macro}")
+        yield one_line(f"via {shown(call.file)}:{call.line}: {call.macro}")
 
 
 def counts(findings: Iterable[Finding]) -> dict[str, int]:
@@ -153,8 +152,7 @@ def fingerprints(findings: Sequence[Finding]) -> list[str]:
 
 
 def as_text(findings: Sequence[Finding], report: Report, *, colour: bool = False) -> str:
-    """Return lines as compilers write them: ``file:line:column: level: CODE message (hint)``, and
-    an indented one for each macro call that led there."""
+    """Return compilers' lines, ``file:line:column: level: CODE message (hint)``, and macro calls."""
     return "".join(f"{line}\n" for it in findings for line in lines_of(it, colour=colour))
 
 
@@ -206,8 +204,7 @@ def _json_finding(finding: Finding, report: Report) -> dict[str, Any]:
 
 
 def as_github(findings: Sequence[Finding], report: Report) -> str:
-    """Return a workflow command for each finding, which GitHub shows at its line; macro calls are
-    further lines of the message."""
+    """Return a workflow command for each finding, which GitHub shows at its line."""
     text = ""
     for it in findings:
         file = one_line(path_below(file_of(it, report)))

@@ -39,7 +39,7 @@ def as_sarif(findings: Sequence[Finding], report: Report) -> str:
         "name": report.tool,
         "version": __version__,
         "semanticVersion": __version__,
-        "rules": [_rule(it) for it in report.rules.values()],
+        "rules": [_sarif_rule(it) for it in report.rules.values()],
     }
     properties = {"distro": report.release, "coverage": report.coverage}
     run = {
@@ -56,7 +56,7 @@ def as_sarif(findings: Sequence[Finding], report: Report) -> str:
     return json_text({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]})
 
 
-def _rule(rule: Rule) -> Json:
+def _sarif_rule(rule: Rule) -> Json:
     both = (("Bad", rule.page.bad), ("Good", rule.page.good))
     examples = [(title, it) for title, it in both if it]
     prose = [rule.what, f"Why: {rule.why}", f"Fix: {rule.fix}"]
@@ -74,6 +74,7 @@ def _rule(rule: Rule) -> Json:
 
 
 def _result(finding: Finding, report: Report, numbers: Mapping[str, int], fingerprint: str) -> Json:
+    """Return a finding as a SARIF result; ``numbers`` has the index of each rule."""
     it = finding
     # Text inside a link of a message.
     macros = (re.sub(r"([\\\[\]])", r"\\\1", one_line(call.macro)) for call in calls(it))
@@ -131,6 +132,7 @@ def _location(path: str, region: Json) -> Json:
 
 
 def _file(path: str) -> Json:
+    """Return the SARIF location of a file, relative to the working directory if it is below it."""
     below = inside(path)
     if below is not None:
         return {"uri": quote(os.fsencode(below)), "uriBaseId": _ROOT}

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plugin definitions: which tag of which plugin holds which name. Data in ``*.vocab``, read lazily;
-``README.md`` has the grammar.
-"""
+"""The plugin definitions, read lazily from ``*.vocab``; ``README.md`` has the grammar."""
 
 from __future__ import annotations
 
@@ -10,6 +8,7 @@ from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_text
 from multibot_rewrite.base.model import DefinitionsError
+from multibot_rewrite.description.rewriters.installed import advice, installed
 from multibot_rewrite.description.rewriters.plugin_definitions.grammar import (
     FORMS,
     KINDS,
@@ -19,7 +18,6 @@ from multibot_rewrite.description.rewriters.plugin_definitions.grammar import (
     split_path,
     split_step,
 )
-from multibot_rewrite.description.rewriters.plugin_definitions.installed import advice, installed
 from multibot_rewrite.description.rewriters.plugin_definitions.library import Definitions
 from multibot_rewrite.description.rewriters.plugin_definitions.values import Value, Values
 
@@ -45,13 +43,11 @@ HERE = os.path.dirname(__file__)
 def load_definitions(
     extra: tuple[str, ...], release: str, *, packages: bool = True, ros: str = ""
 ) -> Definitions:
-    """Return the built-in definitions, those of installed ``packages``, and the files in ``extra``, for
-    a ``release``.
+    """Return the definitions for a ``release``: built-in, of installed ``packages``, in ``extra``.
 
-    With an empty one it is all of them, which no document can be read with; ``ros`` as for
-    ``Definitions``. Raises DefinitionsError, with file and line, for a mistake: at once in what is not
-    built in, otherwise in a section that is used.
-    """
+    An empty release gives all, which no document can be read with; ``ros`` as for
+    ``Definitions``. Raises DefinitionsError, with file and line: at once for a mistake in what
+    is not built in, otherwise in a section that is used."""
     builtin = sorted(name for name in os.listdir(HERE) if name.endswith(".vocab"))
     named = {file.name: file.path for file in (installed() if packages else ())}
     # A user's file may be called like a built-in one.
@@ -61,9 +57,9 @@ def load_definitions(
     for name, path in named.items():
         first.setdefault(os.path.realpath(path), name)
     more = {name: named[name] for name in first.values()}
-    texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
+    texts = {name: _file_text(name, f"{HERE}/{name}") for name in builtin}
     try:
-        texts |= {name: _text(name, path) for name, path in more.items()}
+        texts |= {name: _file_text(name, path) for name, path in more.items()}
         definitions = Definitions(texts, release, bool(more), ros)
         definitions.sections_in(more)
     except DefinitionsError as error:
@@ -71,7 +67,7 @@ def load_definitions(
     return definitions
 
 
-def _text(name: str, path: str) -> str:
+def _file_text(name: str, path: str) -> str:
     try:
         return read_text(path)
     except OSError as error:

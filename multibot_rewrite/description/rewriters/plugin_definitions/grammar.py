@@ -110,7 +110,7 @@ class PluginDefinition(NamedTuple):
 
     @property
     def publishes(self) -> tuple[str, ...]:
-        """Those of ``topics`` that it publishes."""
+        """The ones of ``topics`` that it publishes."""
         return tuple(it.name for it in self.wired if it.role == WIRES[0] and not it.is_moved)
 
 
@@ -145,7 +145,7 @@ def read_section(
         if words[0].endswith(":"):
             _add_setting(settings, f"{file}:{number}", words)
             continue
-        site = _site(f"{file}:{number}", section, number, row)
+        site = _parse_site(f"{file}:{number}", section, number, row)
         before = at_path.setdefault(site.path, [])
         for other in before:
             if share_release(site.releases, other.releases):
@@ -195,19 +195,19 @@ def assemble(
         file,
         line,
         settings.get("releases", ""),
-        _tags(sites),
+        _first_tags(sites),
         words("opens"),
         settings.get("helper", ""),
     )
 
 
 def _checkout_source(words: str) -> str:
-    """Return "repository path" of a setting ``read``, which is "repository tag path"."""
+    """Return the repository and path in the setting ``read``, without the tag."""
     repository, _, rest = words.partition(" ")
     return f"{repository} {rest.partition(' ')[2]}".strip()
 
 
-def _tags(sites: Iterable[SiteRow]) -> frozenset[str]:
+def _first_tags(sites: Iterable[SiteRow]) -> frozenset[str]:
     paths = (split_path(site.path)[0] for site in sites if site.path[0] != "@")
     return frozenset(split_step(steps[0])[0] for steps in paths)
 
@@ -237,7 +237,7 @@ def _add_setting(settings: dict[str, str], place: str, words: list[str]) -> None
     settings[key] = value
 
 
-def _site(place: str, section: str, line: int, row: str) -> SiteRow:
+def _parse_site(place: str, section: str, line: int, row: str) -> SiteRow:
     file = place.rpartition(":")[0]
     spec, _, note = row.partition(" # ")
     path, *words = spec.split()
@@ -300,8 +300,7 @@ def is_step(text: str) -> bool:
 
 
 class Opened(NamedTuple):
-    """A word of ``opens:``, all empty for one without a path: the kind of what is opened, the step to
-    the number of the next robot and the ``last`` one, conditions, the path and the default."""
+    """A word of ``opens:``; numbers go by ``step`` up to ``last``. All empty without a path."""
 
     kind: str = ""
     step: str = ""
@@ -317,7 +316,7 @@ class Opened(NamedTuple):
 
 
 def split_opens(word: str) -> Opened:
-    """Return the parts of a word of ``opens:``."""
+    """Return the parts of an entry of ``opens:``."""
     found = None if word in _BARE_OPENS else _OPENS.fullmatch(word)
     return Opened(*found.groups(default="")) if found else Opened()
 

@@ -75,8 +75,8 @@ class Definitions:
             return self._found.get(key, ())
         made: list[PluginDefinition] = []
         for raw in self._raw[key]:
-            section = self._read(*raw, within)
-            if not self._is_here(section.releases):
+            section = self._parse(*raw, within)
+            if not self._is_in_release(section.releases):
                 continue
             here = [
                 at
@@ -91,7 +91,7 @@ class Definitions:
         # Whole when others see it; two threads that make it at once both get the first one's.
         return self._found.setdefault(key, tuple(made))
 
-    def _is_here(self, words: str) -> bool:
+    def _is_in_release(self, words: str) -> bool:
         return not self.release or has_release(words, self.release)
 
     def has(self, type_: str, name: str) -> bool:
@@ -103,13 +103,13 @@ class Definitions:
         return (name for of, name in self._raw if of == type_)
 
     def rows_elsewhere(self, type_: str, name: str) -> Iterator[SiteRow]:
-        """Yield the rows that this release lacks, with the words for those that have it."""
+        """Yield the rows that this release lacks, with the releases that have them."""
         for file, line, chunk in self._raw.get((type_, name), ()):
             if "releases" in chunk:
                 settings, own = read_section(file, line, chunk.split("\n"))
                 words = settings.get("releases", "")
                 for site in own.values():
-                    if not (self._is_here(words) and self._is_here(site.releases)):
+                    if not (self._is_in_release(words) and self._is_in_release(site.releases)):
                         yield site._replace(releases=site.releases or words)
 
     def releases_elsewhere(self, type_: str, name: str) -> tuple[str, ...]:
@@ -129,22 +129,24 @@ class Definitions:
         return self._values[key]
 
     def _read_values(self, name: str, raws: Sequence[Raw], of_ros_1: bool) -> Values:
-        whole = [it for it in raws if _set(it[2], "read")]
+        whole = [it for it in raws if _rows_of_setting(it[2], "read")]
         file, line, chunk = (*whole, *raws)[0]
         type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
         # What several classes read alike is written once.
         first = name if type_ == OF_VALUES else names[0]
-        is_open = not whole or any("yes" in word for it in whole for word in _set(it[2], "open"))
+        is_open = not whole or any(
+            "yes" in word for it in whole for word in _rows_of_setting(it[2], "open")
+        )
         return values_of((first, *names), of_ros_1, is_open, self._value_rows(raws))
 
     def _value_rows(self, raws: Iterable[Raw]) -> Iterator[Value]:
         for file, line, chunk in raws:
             yield from read_values(file, line + 1, chunk.split("\n")[1:])
-            for block in " ".join(_set(chunk, "with")).split():
+            for block in " ".join(_rows_of_setting(chunk, "with")).split():
                 yield from self._value_rows(self._raw.get(("block", block), ()))
 
     def valued(self) -> Iterator[tuple[str, bool]]:
-        """Yield the names that have values; with true for those of ROS 1."""
+        """Yield the names that have values, each with whether it is for ROS 1."""
         named = ((name, raws) for (type_, name), raws in self._raw.items() if type_ in VALUED)
         for name, raws in named:
             found = {_is_of_ros_1(it[2]) for it in raws if has_values(it[2])}
@@ -155,29 +157,30 @@ class Definitions:
         found: dict[str, list[str]] = {}
         elements = ((key[1], raws) for key, raws in self._raw.items() if key[0] == "element")
         for name, all_raws in elements:
-            raws = [raw for raw in all_raws if self._is_here(_released(raw[2]))]
+            raws = [raw for raw in all_raws if self._is_in_release(_released(raw[2]))]
             if raws:
-                rows = (row for raw in raws for row in _set(raw[2], "at"))
+                rows = (row for raw in raws for row in _rows_of_setting(raw[2], "at"))
                 found[name] = list(dict.fromkeys(word for row in rows for word in row.split()))
         return found
 
     def sections(self, *types: str) -> list[PluginDefinition]:
         """Return all rewriters of these types, parsed and checked, in file order."""
-        return self._parsed(key for key in self._raw if key[0] in types)
+        return self._all_parsed(key for key in self._raw if key[0] in types)
 
     def sections_in(self, files: Container[str]) -> list[PluginDefinition]:
         """Return all rewriters with a part in these files, parsed and checked, and their values."""
         raws = self._raw.items()
-        found = self._parsed(key for key, raw in raws if any(part[0] in files for part in raw))
+        found = self._all_parsed(key for key, raw in raws if any(part[0] in files for part in raw))
         own = (part for _, parts in raws for part in parts if part[0] in files)
         tuple(self._value_rows(own))
         return found
 
-    def _parsed(self, keys: Iterable[tuple[str, str]]) -> list[PluginDefinition]:
+    def _all_parsed(self, keys: Iterable[tuple[str, str]]) -> list[PluginDefinition]:
         found = [section for key in keys for section in self.find(*key)]
         return list({(section.file, section.line): section for section in found}.values())
 
-    def _read(self, file: str, line: int, chunk: str, within: tuple[str, ...]) -> PluginDefinition:
+    def _parse(self, file: str, line: int, chunk: str, within: tuple[str, ...]) -> PluginDefinition:
+        """Return the section of a text that begins at a line."""
         rows = chunk.split("\n")
         settings, own = read_section(file, line, rows)
         sites: dict[str, SiteRow] = {}
@@ -193,22 +196,22 @@ class Definitions:
         sites |= {
             site.path if self.release else key: site
             for key, site in own.items()
-            if self._is_here(site.releases)
+            if self._is_in_release(site.releases)
         }
         return assemble(file, line, header, settings, list(sites.values()))
 
 
 def _released(chunk: str) -> str:
-    """Return the release words of a section that is not read yet; wrong ones are found when it is."""
-    words = next((row.strip() for row in _set(chunk, "releases")), "")
+    """Return the unchecked release setting of a section that is not read yet."""
+    words = next((row.strip() for row in _rows_of_setting(chunk, "releases")), "")
     return words if words and is_release_words(words) else ""
 
 
 def _is_of_ros_1(chunk: str) -> bool:
-    return " 1" in _set(chunk, "ros")
+    return " 1" in _rows_of_setting(chunk, "ros")
 
 
-def _set(chunk: str, name: str) -> list[str]:
+def _rows_of_setting(chunk: str, name: str) -> list[str]:
     """Return the rows of a setting in a section that is not read yet."""
     return [it.partition("\n")[0] for it in chunk.split(f"\n{name}:")[1:]]
 
@@ -227,16 +230,16 @@ def merge(first: PluginDefinition, second: PluginDefinition) -> PluginDefinition
             raise DefinitionsError(
                 f"{second.file}:{site.line}: {site.path} is there already, in {first.file}"
             )
-    below = _one_setting(first, second, "model_namespace")
+    below = _agreed_setting(first, second, "model_namespace")
     sites = first.sites + tuple(new)
     return first._replace(
         sites=tuple(site._replace(below_model=below) for site in sites),
         model_namespace=below,
         at=first.at + tuple(name for name in second.at if name not in first.at),
         blocks=first.blocks + tuple(name for name in second.blocks if name not in first.blocks),
-        select=_one_setting(first, second, "select"),
-        unique=_one_setting(first, second, "unique"),
-        helper=_one_setting(first, second, "helper"),
+        select=_agreed_setting(first, second, "select"),
+        unique=_agreed_setting(first, second, "unique"),
+        helper=_agreed_setting(first, second, "helper"),
         wired=first.wired + second.wired,
         switches=first.switches + second.switches,
         hardwired=first.hardwired + second.hardwired,
@@ -247,7 +250,7 @@ def merge(first: PluginDefinition, second: PluginDefinition) -> PluginDefinition
     )
 
 
-def _one_setting(first: PluginDefinition, second: PluginDefinition, setting: str) -> str:
+def _agreed_setting(first: PluginDefinition, second: PluginDefinition, setting: str) -> str:
     old, new = getattr(first, setting), getattr(second, setting)
     if old and new and old != new:
         place = f"{second.file}:{second.line}"

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the code of a plugin or of hardware reads: the type, words and range of each value; and the
-topics and services that it names, as a section has them: ``odom=pkg/msg/Name``.
-"""
+"""What the code of a plugin reads: type, words, range; and topics as ``odom=pkg/msg/Name``."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -55,7 +53,7 @@ class Values(NamedTuple):
 
 
 def is_typed(word: str) -> bool:
-    """Return whether this word of a row is about the value's type, not about its kind of name."""
+    """Return whether this option of a row is about the value's type."""
     option, given, _ = word.partition("=")
     return bool(given) and option in OPTIONS
 
@@ -70,7 +68,7 @@ def read_values(file: str, line: int, rows: Iterable[str]) -> Iterator[Value]:
     for number, row in enumerate(rows, line):
         path, *words = row.partition(" # ")[0].split() or [""]
         if words and row[:1] != "#" and not path.endswith(":"):
-            yield from _value(f"{file}:{number}", path, words)
+            yield from _value_in_row(f"{file}:{number}", path, words)
 
 
 def values_of(
@@ -86,7 +84,7 @@ def values_of(
     return Values(names, of_ros_1, is_open, rows, blocks, blocks_of)
 
 
-def _value(place: str, path: str, words: list[str]) -> Iterator[Value]:
+def _value_in_row(place: str, path: str, words: list[str]) -> Iterator[Value]:
     role, *rest = words
     options = dict(it.split("=", 1) for it in rest if is_typed(it) or it.startswith(_RELEASES))
     if role == VALUE:

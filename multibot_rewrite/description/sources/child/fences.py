@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All fences around a process, put up once what it needs is loaded. With Landlock the kernel
-refuses this process every file but those that are named, every TCP port, and signals to others.
+"""All restrictions of a process, put up once what it needs is loaded.
 
-Without rules nothing of what the set handles is left. Source: Linux, include/uapi/linux/landlock.h
-and Documentation/userspace-api/landlock.rst.
-"""
+With Landlock the kernel refuses this process every file but those named, every TCP port, and
+signals to others. Without rules nothing of what the set handles is left. Source: Linux,
+include/uapi/linux/landlock.h and Documentation/userspace-api/landlock.rst."""
 
 import ctypes
 import os
@@ -41,8 +40,7 @@ def version() -> int:
 
 
 def enclose(readable: Iterable[str] = (), writable: Iterable[str] = ()) -> bool:
-    """Deny this process, and what it starts, all paths but these; return False if that is not
-    possible. What is writable can be read as well."""
+    """Deny this process and its children all paths but these; return whether it worked."""
     known = version()
     if not known or not SYSTEM or not no_new_privileges():
         return False
@@ -148,7 +146,7 @@ def refuse_all() -> bool:
         for name, value in list(vars(module).items()) if module else ():
             if callable(value) and name not in _KEPT and not isinstance(value, type):
                 setattr(module, name, _refusing_function(name))
-    sys.addaudithook(_refuse)
+    sys.addaudithook(_refuse_event)
     return True
 
 
@@ -159,7 +157,7 @@ def _refusing_function(name: str) -> Callable[..., NoReturn]:
     return refuse
 
 
-def _refuse(event: str, arguments: tuple[object, ...]) -> None:
+def _refuse_event(event: str, arguments: tuple[object, ...]) -> None:
     # Constants of the code alone: there is nothing that a file could change.
     if event not in {"compile", "exec", "builtins.id", "object.__getattr__", "array.__new__"}:
         raise PermissionError(f"refused: {event} {str(arguments)[:80]}")

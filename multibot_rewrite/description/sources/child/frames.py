@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The frames that a child and its parent send each other: a letter, a length, and that many bytes;
-and what a child has to ask its parent for: files, packages, variables of the environment.
+"""The frames that a child and its parent exchange: a letter, a length, and that many bytes.
 
-A child asks for what it needs (QUESTION), one thing at a time, and gets a VALUE or a REFUSAL. Its
-result is a REPORT, and for an expansion the TEXT, and the numbers of ORIGINS, CALLS and PIECES.
-"""
+A child asks for files, packages or variables (QUESTION), one at a time, and gets a VALUE or a
+REFUSAL. Its result is a REPORT, and for an expansion the TEXT, and the numbers of ORIGINS, CALLS
+and PIECES."""
 
 from __future__ import annotations
 
@@ -43,7 +42,7 @@ START, END, ENDED = b"s", b"e", b"d"
 
 
 class GarbageError(Exception):
-    """What came is no frame that was agreed on."""
+    """The received bytes are no expected frame."""
 
 
 def framed(kind: bytes, data: bytes) -> bytes:
@@ -64,7 +63,7 @@ _ANSWERS = {VALUE: 2 * MOST_TEXT, REFUSAL: MOST_TEXT}
 
 
 class RefusedError(Exception):
-    """The parent said no; the text is its reason."""
+    """The parent refused; the text is its reason."""
 
 
 _ERRORS: dict[str, Callable[..., Exception]] = {
@@ -109,7 +108,7 @@ def connect(xacro: Any, substitution: Any, ask: Ask) -> None:
 
 
 def _known(look_up: Callable[..., str], ask: Ask) -> Callable[..., str]:
-    """Return a function for the parent's value of a variable, or for ``look_up`` if it is not set."""
+    """Return a function that asks the parent for a variable, or else calls ``look_up``."""
 
     def known(name: str, *more: str, **named: str) -> str:
         found = json.loads(ask(ENVIRONMENT, name))

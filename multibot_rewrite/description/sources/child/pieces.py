@@ -24,10 +24,10 @@ TEXT_NODE = "#"
 
 
 class Spot(NamedTuple):
-    """Where a piece was written: the file's number, or GIVEN for an argument of the caller; the
-    element's; the attribute, ``#0`` for the first text in it; the offset there, in characters.
-    ``length`` is that of an expression whose result the piece is, 0 for a piece that is written
-    there."""
+    """The place of a piece: numbers of file (or GIVEN) and element, attribute, character offset.
+
+    ``attribute`` is ``#0`` for the first text in the element; ``length`` is that of an
+    expression with this result, else 0."""
 
     file: int
     element: int
@@ -37,14 +37,14 @@ class Spot(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """So many characters of a text, and their place."""
+    """A number of characters of a text, and their place."""
 
     length: int
     place: Spot | None
 
 
 class PiecedText(str):
-    """A text and its pieces, as long as it is together."""
+    """A text with its pieces."""
 
     __slots__ = ("pieces",)
     pieces: tuple[Piece, ...]
@@ -125,12 +125,12 @@ def _merged_pieces(pieces: Iterable[Piece]) -> Iterator[Piece]:
 def tracking(
     xacro: Any, arguments: Mapping[str, str], number: Callable[[str], int]
 ) -> dict[str, str]:
-    """Let ``xacro`` keep pieces from now on; return the ``arguments`` of the caller, with theirs.
-    ``number`` gives one to a file that was read and is no XML."""
+    """Let ``xacro`` keep pieces; return the caller's ``arguments`` with theirs."""
+    # A file that was read and is no XML has its number from ``number``.
     import yaml
 
     xacro.eval_text = _evaluator(xacro)
-    xacro.parse_macro_arg = _defaults(xacro.parse_macro_arg)
+    xacro.parse_macro_arg = _macro_parser(xacro.parse_macro_arg)
     scalar = yaml.SafeLoader.construct_scalar
 
     def construct(loader: Any, node: Any) -> str:
@@ -171,9 +171,9 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
 
     def result(kind: int, part: str, symbols: Any) -> Any:
         if kind == lexer.EXPR:
-            return _known(expression(part[2:-1], symbols), part)
+            return _with_places(expression(part[2:-1], symbols), part)
         if kind == lexer.EXTENSION:
-            return _known(extension(part[2:-1], symbols), part)
+            return _with_places(extension(part[2:-1], symbols), part)
         return part[1:] if kind == lexer.DOLLAR_DOLLAR_BRACE else part
 
     def evaluated(text: str, symbols: Any) -> Any:
@@ -187,51 +187,54 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
             results.append((result(kind, part, symbols), part))
         if len(results) == 1:
             return results[0][0]
-        return joined([_as_text(*it) for it in results])
+        return joined([_as_pieced_text(*it) for it in results])
 
     return evaluated
 
 
-def _as_text(value: object, part: str) -> str:
+def _as_pieced_text(value: object, part: str) -> str:
     text = str(value)
-    return text if isinstance(text, PiecedText) else PiecedText(text, [Piece(len(text), _of(part))])
+    return (
+        text
+        if isinstance(text, PiecedText)
+        else PiecedText(text, [Piece(len(text), _place_copied_from(part))])
+    )
 
 
-def _known(value: Any, part: str) -> Any:
-    """Return a result of the expression ``part`` with places: a text without one has that of the whole,
-    or of the quoted word that it is."""
+def _with_places(value: Any, part: str) -> Any:
+    """Return a result of the expression ``part`` with its place, or that of a quoted word in it."""
     if not isinstance(value, str):
         return value
     pieces, at = [], 0
     for piece in pieces_of(value):
         text = str.__getitem__(value, slice(at, at + piece.length))
-        place = piece.place or _quoted(text, part) or _of(part)
+        place = piece.place or _place_in_quotes(text, part) or _place_copied_from(part)
         pieces.append(Piece(piece.length, place))
         at += piece.length
     return PiecedText(value, pieces)
 
 
-def _quoted(text: str, part: str) -> Spot | None:
+def _place_in_quotes(text: str, part: str) -> Spot | None:
     """Return where a text is in quotes, if that is in one place."""
     found = [
         part.find(f"{quote}{text}{quote}")
         for quote in "'\""
         if part.count(f"{quote}{text}{quote}") == 1
     ]
-    place = _of(part)
+    place = _place_copied_from(part)
     if len(found) != 1 or not place:
         return None
     return place._replace(at=place.at + found[0] + 1, length=0)
 
 
-def _of(part: str) -> Spot | None:
+def _place_copied_from(part: str) -> Spot | None:
     """Return the place in a file of a text that is copied from there, or None."""
     pieces = pieces_of(part)
     whole = len(pieces) == 1 and pieces[0].place
     return whole._replace(length=len(part)) if whole and not whole.length else None
 
 
-def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
+def _macro_parser(parse: Callable[[str], Any]) -> Callable[[str], Any]:
     """Return xacro's parser of macro parameters, with defaults that know where they are written."""
 
     def parsed(text: str) -> Any:
@@ -246,9 +249,10 @@ def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
 
 
 def numbers(document: Any, words: list[str]) -> array[int]:
-    """Return the pieces of all values of an expanded document, eight numbers each: element, attribute,
-    length, file, element, attribute, offset, length of an expression; attributes by their number in
-    ``words``."""
+    """Return the pieces of all values of an expanded document, eight numbers each.
+
+    They are element, attribute, length, file, element, attribute, offset, length of an
+    expression; attributes by their number in ``words``."""
     known: dict[str, int] = {}
 
     def number(word: str) -> int:

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One expansion, in the process that was made for it, and where each of its elements was written. The
-only import of xacro.
+"""Expands one xacro in its own process, and finds where elements were written; imports xacro.
 
-xacro expands a DOM tree: its elements carry their mark (numbers of files, elements and macro calls) as
-user data, which minidom hands on to every copy, and a macro's body is copied while its call is the
-innermost one.
-"""
+xacro expands a DOM tree: its elements carry their mark (numbers of files, elements and macro
+calls) as user data, which minidom hands on to every copy, and a macro's body is copied while its
+call is the innermost one."""
 
 from __future__ import annotations
 
@@ -31,7 +29,7 @@ _CALL = "xacro:call"
 
 
 class Expanded(NamedTuple):
-    """A result: what is told as JSON, the text, and the numbers of origins and calls."""
+    """A result: the report for JSON, the text, and the numbers of origins and calls."""
 
     report: dict[str, object]
     text: bytes = b""
@@ -52,8 +50,7 @@ def missing() -> str:
 def expand(
     path: str, arguments: Mapping[str, str], traced: bool, in_pieces: bool, ask: Ask
 ) -> Expanded:
-    """Return the text of a xacro file, or the reason why there is none. With ``traced`` it has the
-    origin of each element, with ``in_pieces`` also that of each piece of a value."""
+    """Return the text of a xacro file or why there is none; ``traced`` with origins of elements."""
     import xacro
     from xacro import substitution_args
 
@@ -87,7 +84,7 @@ def _failure(error: Exception, file: str, marks: Marks) -> dict[str, object]:
     """Return the reason of a failure, the file, and the place as far as it is known."""
     position = (error.lineno, error.offset + 1) if isinstance(error, ExpatError) else None
     place = _place(error)
-    said = {"reason": _reason(error)[:MOST_WORDS], "file": file, "position": position}
+    said = {"reason": _reason_text(error)[:MOST_WORDS], "file": file, "position": position}
     return {**said, "place": place, "call": marks.failed}
 
 
@@ -120,7 +117,7 @@ def _attribute(element: Any, frame: FrameType) -> str:
     return str(name) if both and element.getAttribute(name) == value else ""
 
 
-def _reason(error: Exception) -> str:
+def _reason_text(error: Exception) -> str:
     if isinstance(error, ExpatError):
         return f"not well-formed XML: {errors.messages.get(error.code, error)}"
     if isinstance(error, UnicodeDecodeError):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A filter of system calls (seccomp) that leaves those which compute, ask for memory, and read and
-write open files. Where Landlock says which files may be opened, calls that open files and folders are
-left, too. Sources: Linux, Documentation/userspace-api/seccomp_filter.rst,
-arch/x86/entry/syscalls/syscall_64.tbl, include/uapi/asm-generic/unistd.h."""
+"""A filter of system calls (seccomp): compute, ask for memory, read and write open files.
+
+Calls that open files are left where Landlock says which. Sources: Linux,
+Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
+include/uapi/asm-generic/unistd.h."""
 
 import ctypes
 import errno
@@ -64,8 +65,9 @@ _ASKED = (
 
 
 class Machine(NamedTuple):
-    """The audit number of an architecture; its calls that are allowed, those that are if they make no
-    memory executable, those for files, openat; futex, and for files ioctl and fcntl."""
+    """An architecture's audit number and allowed calls; ``memory``: unless they make it executable.
+
+    ``opens`` is openat; ``asks`` are futex, and for files ioctl and fcntl."""
 
     audit: int
     calls: tuple[int, ...]
@@ -75,7 +77,7 @@ class Machine(NamedTuple):
     asks: tuple[int, ...]
 
 
-def _numbers(numbers: str) -> tuple[int, ...]:
+def _parse_numbers(numbers: str) -> tuple[int, ...]:
     return tuple(map(int, numbers.split()))
 
 
@@ -110,9 +112,9 @@ _KINDS: Mapping[str, tuple[int, tuple[int, int], int, tuple[int, ...]]] = {
 MACHINES: Mapping[str, Machine] = {
     name: Machine(
         audit,
-        _numbers(_NUMBERS[name]),
+        _parse_numbers(_NUMBERS[name]),
         memory,
-        _numbers(" ".join(_FILES[name])),
+        _parse_numbers(" ".join(_FILES[name])),
         opens,
         asks,
     )
@@ -125,8 +127,7 @@ class _Program(ctypes.Structure):
 
 
 def enclose(files: bool = False) -> bool:
-    """Refuse all other calls from now on, but for those of ``files`` where they are asked for; False
-    where that is not possible."""
+    """Refuse all other system calls, except for ``files``; return whether it worked."""
     machine = MACHINES.get(os.uname().machine)
     if machine is None or struct.calcsize("P") != 8 or not no_new_privileges():
         return False
@@ -137,8 +138,7 @@ def enclose(files: bool = False) -> bool:
 
 @cache
 def filter_program(machine: Machine, files: bool = False) -> bytes:
-    """Return the filter as the kernel reads it: eight bytes an instruction. With ``files`` libraries
-    can be loaded as well: they may be those of Python's modules."""
+    """Return the filter, eight bytes an instruction; ``files``: libraries can be loaded."""
     steps = [
         (_LOAD, 0, 0, _ARCHITECTURE),
         (_EQUAL, 1, 0, machine.audit),

@@ -140,10 +140,10 @@ def _work(descriptor: int) -> None:
         ways = (request["traced"], request["in_pieces"])
         ask = asking(inbox.read, send)
         result = run_xacro.expand(request["path"], request["arguments"], *ways, ask)
-    send(_frames(result._replace(report={**result.report, "fences": held})))
+    send(_result_frames(result._replace(report={**result.report, "fences": held})))
 
 
-def _frames(result: Expanded) -> bytes:
+def _result_frames(result: Expanded) -> bytes:
     frames = framed(REPORT, json.dumps(result.report).encode())
     if "root" in result.report:
         frames += framed(TEXT, result.text) + framed(ORIGINS, result.origins)

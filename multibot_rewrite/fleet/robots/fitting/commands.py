@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Commands of velocity: the topic and the type with which nodes and the drive find each other; and the
-input of a twist_mux for each sender of them, since the drive obeys one.
+"""Fits commands of velocity: their topic, their type, and a twist_mux input for each sender.
 
 The inputs are those of the user's file, where one has the node; then what a node set adds fits
 these."""
@@ -9,7 +8,6 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import is_tool_word
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.fitting.node_topics import (
     COMMANDS,
     CommandEnd,
@@ -21,7 +19,6 @@ from multibot_rewrite.fleet.robots.fitting.node_topics import (
     usual_values,
     with_rules,
 )
-from multibot_rewrite.fleet.robots.fitting.sensors import bridge_rows_of
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
 from multibot_rewrite.knowledge.records import TWIST_MUX, Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Run
@@ -33,8 +30,7 @@ from multibot_rewrite.system.words import PLAIN
 def driving(
     nodes: Sequence[NodeFacts], own: Collection[str], bridged: Iterable[str]
 ) -> Sequence[NodeFacts]:
-    """Return the nodes with unheard commands of ``own`` ones sent to the one controller that drives;
-    without controllers to the first topic that is ``bridged``."""
+    """Return the nodes with unheard commands of ``own`` nodes sent to the one drive."""
     led = topics_of(controllers(nodes), SUBSCRIBES, COMMANDS)
     drives = led or [*bridged]
     if len(led) > 1 or not drives:
@@ -51,8 +47,7 @@ def driving(
 
 
 def by_way_of_relays(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFacts]:
-    """Return the nodes; ``own`` ones with which a person drives send to the first of what limits or
-    chooses the commands of the drive, and not past it."""
+    """Return the nodes; ``own`` ones for a person send to what limits the commands of the drive."""
     ends = [
         CommandEnd(node.name, it.role, topic_of(node, it), it.type, it.parameter)
         for node in nodes
@@ -75,16 +70,17 @@ def of_one_type(
     free: Collection[str],
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
-    spec: RobotSpec,
+    rows: Iterable[str],
 ) -> list[NodeFacts]:
-    """Return the nodes, with commands of one type as far as the build may choose it."""
+    """Return the nodes, with commands of one type as far as the build may choose it; ``rows`` are the
+    types of the robot's own bridge."""
     choices = {it.node.name: it for it in _choices(nodes, own, free, given, known)}
-    wanted = _wanted(tuple(choices.values()), free, nodes, spec)
+    wanted = _wanted_type(tuple(choices.values()), free, nodes, rows)
     made = []
     for node in nodes:
         choice = choices.get(node.name)
         # The parameter for the type, where that is not the default.
-        switch = _switch(choice, wanted) if choice and choice.type != wanted else ()
+        switch = _switch_for(choice, wanted) if choice and choice.type != wanted else ()
         if choice and choice.is_free and switch is not None:
             ends = (
                 it._replace(type=wanted, also=(), types=())
@@ -99,8 +95,9 @@ def of_one_type(
 
 
 class _Choice(NamedTuple):
-    """A node whose commands are stamped or not as a parameter says: its ends that are, as its code has
-    them, the type that it has now, whether a file sets the parameter, and whether the build may."""
+    """A node whose parameter decides if its commands are stamped, with those ends and type.
+
+    ``is_set``: a file sets the parameter; ``is_free``: the build may."""
 
     node: NodeFacts
     ends: Sequence[Endpoint]
@@ -116,6 +113,7 @@ def _choices(
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
 ) -> Iterator[_Choice]:
+    """Yield the nodes whose parameter decides if commands are stamped."""
     for node in nodes:
         ends = [*_ends_of_either_type(known.get(node.kind, node)), *_ends_of_either_type(node)]
         if ends:
@@ -123,30 +121,31 @@ def _choices(
             sections = (it.values for it in given if f"/{it.node}".endswith(last))
             values = next(sections, usual_values(node))
             chosen = chosen_type(ends[0].types, lookup(node, values)) or ends[0].type
-            is_set = not _switches(ends).isdisjoint(values)
+            is_set = not _condition_parameters(ends).isdisjoint(values)
             is_free = node.name in free or (node.name in own and not is_set)
             yield _Choice(node, ends, chosen, is_set, is_free)
 
 
 def _ends_of_either_type(node: NodeFacts) -> Iterator[Endpoint]:
-    """Yield the ends of a node that are of either type, as a parameter says; no open ones."""
+    """Yield the ends of a node whose type a parameter chooses."""
     ends = (it for it in node.endpoints if it.types and not it.when)
     yield from (it for it in ends if {it.type, *it.also}.issuperset(COMMANDS))
 
 
-def _switches(ends: Iterable[Endpoint]) -> set[str]:
+def _condition_parameters(ends: Iterable[Endpoint]) -> set[str]:
     conditions = (condition for it in ends for condition, _ in it.types)
     return {it.parameter for one in conditions for terms in parse_condition(one) for it in terms}
 
 
-def _wanted(
-    choices: Sequence[_Choice], free: Collection[str], nodes: Iterable[NodeFacts], spec: RobotSpec
+def _wanted_type(
+    choices: Sequence[_Choice],
+    free: Collection[str],
+    nodes: Iterable[NodeFacts],
+    rows: Iterable[str],
 ) -> str:
-    """Return the type of the robot's commands: what a file sets, what its bridge or driver takes, what
-    the nodes of its files have, and what all nodes have; else the plain one."""
+    """Return the type of the robot's commands, by files, bridge or nodes; else the plain one."""
     topics = {topic_of(it.node, end) for it in choices for end in _ends_of_either_type(it.node)}
     said = [it.type for it in choices if it.is_set]
-    rows = [it.end.type for it in bridge_rows_of(spec) if it.end.role == SUBSCRIBES]
     heard = [
         end.type
         for node in nodes
@@ -159,9 +158,9 @@ def _wanted(
     return next(iter((*fixed, *of_files, *(usual if len(usual) == 1 else ()))), PLAIN)
 
 
-def _switch(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
+def _switch_for(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
     """Return the parameter that gives all ends of the node the wanted type; None for no such one."""
-    for name in sorted(_switches(choice.ends)):
+    for name in sorted(_condition_parameters(choice.ends)):
         for value in (True, False):
             value_of = {name: value}.get
             if all((chosen_type(it.types, value_of) or it.type) == wanted for it in choice.ends):
@@ -198,23 +197,23 @@ def through_a_mux(
     node = next((it for it in nodes if it.name in own_mux(nodes, added)), None)
     if node is None:
         return nodes
-    outputs = frozenset(topic_of(node, it) for it in _commands(node, PUBLISHES))
+    outputs = frozenset(topic_of(node, it) for it in _velocity_ends(node, PUBLISHES))
     others = [it for it in nodes if it.name != node.name]
-    obeyed = {topic_of(it, end) for it in others for end in _commands(it, SUBSCRIBES)}
+    obeyed = {topic_of(it, end) for it in others for end in _velocity_ends(it, SUBSCRIBES)}
     node, apart = _with_own_inputs(node, outputs | obeyed)
     # A file has the ids of the inputs, or the node set.
-    ids = ((_id(it.parameter), topic_of(node, it)) for it in _commands(node, SUBSCRIBES))
-    inputs = {id_ if id_ != "*" else _role(topic, usual): topic for id_, topic in ids}
+    ids = ((_input_id(it.parameter), topic_of(node, it)) for it in _velocity_ends(node, SUBSCRIBES))
+    inputs = {id_ if id_ != "*" else _input_role(topic, usual): topic for id_, topic in ids}
     heard = {*inputs.values(), *topics_of(others, SUBSCRIBES)}
     lost = [
         (it.name, topic)
         for it in others
         if it.name in added and not it.host
-        for topic in dict.fromkeys(topic_of(it, end) for end in _commands(it, PUBLISHES))
+        for topic in dict.fromkeys(topic_of(it, end) for end in _velocity_ends(it, PUBLISHES))
         if topic in outputs or topic not in heard
     ]
-    sent = {topic_of(it, end) for it in others for end in _commands(it, PUBLISHES)}
-    wanted = {(name, topic): _role(topic, usual) for name, topic in lost}
+    sent = {topic_of(it, end) for it in others for end in _velocity_ends(it, PUBLISHES)}
+    wanted = {(name, topic): _input_role(topic, usual) for name, topic in lost}
     places: dict[str, str] = {}
     # The topic of the input for each role: by its id, or by a word in its id or topic. A planner's,
     # the last, was called as what the drive obeys, or it is any that nobody has.
@@ -225,20 +224,20 @@ def through_a_mux(
             free = (it for it in inputs.values() if it not in {*sent, *places.values()})
             named = [*apart, *named, *free]
         places[role] = next(iter((*own, *named)), "")
-    lacking = [it for it, topic in places.items() if not topic and _name_of_topic(it) in usual]
+    lacking = [it for it, topic in places.items() if not topic and _topic_parameter(it) in usual]
     node = _with_inputs(node, lacking, usual, of_package)
-    places |= {it: str(usual[_name_of_topic(it)]) for it in lacking}
+    places |= {it: str(usual[_topic_parameter(it)]) for it in lacking}
     moves = {key: places[role] for key, role in wanted.items()}
-    return [node if it.name == node.name else _moved(it, moves) for it in nodes]
+    return [node if it.name == node.name else _with_moved_commands(it, moves) for it in nodes]
 
 
-def _commands(node: NodeFacts, role: str) -> Iterator[Endpoint]:
+def _velocity_ends(node: NodeFacts, role: str) -> Iterator[Endpoint]:
     """Yield the ends with velocities that a node has for certain."""
     ends = (it for it in node.endpoints if it.role == role and not it.when)
     yield from (it for it in ends if it.type in COMMANDS)
 
 
-def _id(parameter: str) -> str:
+def _input_id(parameter: str) -> str:
     """Return the id of an input, of ``topics.ID.topic``."""
     return parameter.partition(".")[2].rpartition(".")[0]
 
@@ -247,7 +246,7 @@ def _with_own_inputs(node: NodeFacts, taken: Collection[str]) -> tuple[NodeFacts
     """Return the twist_mux with its inputs moved off topics that are ``taken``, and the moved ones."""
     apart = {
         it: f"{topic}{_APART}"
-        for it in _commands(node, SUBSCRIBES)
+        for it in _velocity_ends(node, SUBSCRIBES)
         if (topic := topic_of(node, it)) in taken and "*" not in it.parameter
     }
     ends = (it._replace(name=apart.get(it, it.name)) for it in node.endpoints)
@@ -255,13 +254,13 @@ def _with_own_inputs(node: NodeFacts, taken: Collection[str]) -> tuple[NodeFacts
     return node._replace(endpoints=tuple(ends), usual=(*node.usual, *values)), [*apart.values()]
 
 
-def _role(topic: str, usual: Usual) -> str:
-    """Return the id of the input that the node set has for a topic; that of a planner for any other."""
-    ids = (_id(name) for name, value in usual.items() if value == topic)
+def _input_role(topic: str, usual: Usual) -> str:
+    """Return the id of the node set's input for a topic; the planner's for any other topic."""
+    ids = (_input_id(name) for name, value in usual.items() if value == topic)
     return next(ids, _OF_PLANNER)
 
 
-def _name_of_topic(role: str) -> str:
+def _topic_parameter(role: str) -> str:
     return f"{_INPUT.format(role)}topic"
 
 
@@ -269,17 +268,17 @@ def _with_inputs(
     node: NodeFacts, roles: Iterable[str], usual: Usual, of_package: NodeFacts
 ) -> NodeFacts:
     """Return the twist_mux with the inputs of its node set besides those of the user's file."""
-    (like,) = _commands(of_package, SUBSCRIBES)
+    (like,) = _velocity_ends(of_package, SUBSCRIBES)
     for role in roles:
         values = [it for it in usual.items() if it[0].startswith(_INPUT.format(role))]
-        name = _name_of_topic(role)
+        name = _topic_parameter(role)
         end = like._replace(name=str(usual[name]), fixed="", parameter=name)
         node = node._replace(endpoints=(*node.endpoints, end), usual=(*node.usual, *values))
     return node
 
 
-def _moved(node: NodeFacts, moves: Mapping[tuple[str, str], str]) -> NodeFacts:
+def _with_moved_commands(node: NodeFacts, moves: Mapping[tuple[str, str], str]) -> NodeFacts:
     """Return the node with its commands on other topics."""
-    sent = ((it, topic_of(node, it)) for it in _commands(node, PUBLISHES))
+    sent = ((it, topic_of(node, it)) for it in _velocity_ends(node, PUBLISHES))
     own = {it: moves[node.name, topic] for it, topic in sent if moves.get((node.name, topic))}
     return with_rules(node, own)

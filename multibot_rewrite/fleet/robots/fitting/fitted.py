@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Settings of a robot's nodes that no file of the robot makes: they fit what its description and its
-files have. Transforms: what sends them, which nodes would send one a second time; frames of nodes:
-those of the robot in the place of usual ones that it has not.
+"""Fits settings of nodes that no file makes to the robot's description and files.
 
-What the user's files say stays. A node that a node set adds gets the type of commands, the frames
-and the transforms with which it works with them."""
+Only one node sends a transform, and usual frames that the robot has not become its own. What the
+user's files say stays."""
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -27,9 +25,11 @@ from multibot_rewrite.fleet.robots.fitting.commands import (
 )
 from multibot_rewrite.fleet.robots.fitting.node_topics import controllers, plugins, usual_values
 from multibot_rewrite.fleet.robots.fitting.sensors import (
+    alone,
     bridge_rows_of,
     bridged_commands,
     by_sensor,
+    command_rows,
     hearing_sensors,
     offered_topics,
     with_odometry,
@@ -65,7 +65,7 @@ def is_led_elsewhere(member: Member, spec: RobotSpec) -> bool:
 
 
 def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
-    """Yield the transforms of the simulator's systems, each with the last word of its topic there."""
+    """Yield the transforms of simulator systems, each with the last name of its topic."""
     for host, section in collect(member.source, member.tree).served:
         sites = frame_sites(host, section, _NAMING)
         frames = [text_at(host, it.path) or default_of(host, it.default, _NAMING) for it in sites]
@@ -80,7 +80,7 @@ def brings_transforms(spec: RobotSpec) -> bool:
 
 
 def _led_elsewhere(spec: RobotSpec) -> set[str]:
-    """Return last words of gz topics with transforms that bridge files put on no tf topic."""
+    """Return last names of gz topics whose transforms are bridged to another topic than tf."""
     led: dict[str, set[str]] = defaultdict(set)
     for it in bridge_rows_of(spec):
         if it.end.type == TF_TYPE and it.end.role != SUBSCRIBES:
@@ -96,18 +96,18 @@ def sent_by_controllers(nodes: Iterable[NodeFacts]) -> Iterator[Edge]:
 def without_second_senders(
     nodes: Sequence[NodeFacts], free: Collection[str], sent: Sequence[Edge]
 ) -> Iterator[NodeFacts]:
-    """Yield the nodes, free ones with their transforms off where another one sends them: two would
-    take the frame from each other."""
+    """Yield the nodes; ``free`` ones do not send transforms that another one sends."""
+    # Two would take the frame from each other.
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
-    taken = {_place(it, bodies) for it in (*sent, *_in_files(nodes, free))}
+    taken = {_placed_body(it, bodies) for it in (*sent, *_edges_in_files(nodes, free))}
     for node in nodes:
-        own = {_place(it, bodies) for it in sent_by(node, "")}
-        switch = _switch_of(node) if node.name in free and not own.isdisjoint(taken) else ""
+        own = {_placed_body(it, bodies) for it in sent_by(node, "")}
+        switch = _transform_switch(node) if node.name in free and not own.isdisjoint(taken) else ""
         yield (node._replace(sends=(), usual=(*node.usual, (switch, False))) if switch else node)
         taken |= set() if switch else own
 
 
-def _in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterator[Edge]:
+def _edges_in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterator[Edge]:
     yield from (it for node in nodes if node.name not in free for it in sent_by(node, ""))
 
 
@@ -115,8 +115,8 @@ def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[
     """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``."""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
     sure = (it for it in nodes if not it.when)
-    own = {_place(it, bodies) for it in _in_files(sure, free)}
-    return any(_place(it, bodies) in own for it in sent)
+    own = {_placed_body(it, bodies) for it in _edges_in_files(sure, free)}
+    return any(_placed_body(it, bodies) in own for it in sent)
 
 
 def have_two_parents(sent: Iterable[Edge]) -> bool:
@@ -124,12 +124,12 @@ def have_two_parents(sent: Iterable[Edge]) -> bool:
     return any(len(it) > 1 for it in sets_by_key((it.child, it.parent) for it in sent).values())
 
 
-def _place(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
-    """Return what a transform places, and where; a robot has one place under any of its frames."""
+def _placed_body(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
+    """Return what a transform places and where; all frames of the body count as one."""
     return edge.parent, "" if edge.child in bodies else edge.child
 
 
-def _switch_of(node: NodeFacts) -> str:
+def _transform_switch(node: NodeFacts) -> str:
     """Return the parameter that, alone, switches all transforms of a node off; empty for none."""
     asked = (one for it in node.sends for terms in parse_condition(it.condition) for one in terms)
     values = usual_values(node)
@@ -146,11 +146,13 @@ NO_FRAMES: Frames = {}
 
 
 def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
-    """Return the usual frames that the robot lacks, each with its drive's frame for that place."""
-    placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), None)
+    """Return the usual frames that the robot lacks, each with its drive's frame for that place, or
+    with the usual link that it has."""
+    links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
+    own = next((edge_of(ODOM, it) for it in BODY_FRAMES if it in links), None)
+    placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), own)
     if placed is None:
         return NO_FRAMES
-    links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
     given = {frame.default for it in nodes for frame in it.frames if frame.given}
     has = links | given | {frame for it in sent for frame in it[:2]}
     wanted = {**dict.fromkeys(BODY_FRAMES, placed.child), ODOM: placed.parent}
@@ -169,8 +171,7 @@ def with_frames(node: NodeFacts, fits: Frames) -> NodeFacts:
 def changed_frames(
     nodes: Iterable[NodeFacts], before: Iterable[NodeFacts]
 ) -> Mapping[tuple[str, str], str]:
-    """Return the frames of nodes that are others than ``before``, where no file sets them: by the
-    node's last name and the parameter."""
+    """Return the frames of nodes that are others than ``before``, by last name and parameter."""
     old = {(node.name, it.parameter): it.default for node in before for it in node.frames}
     return {
         (node.kind.rpartition("/")[2], it.parameter): it.default
@@ -192,8 +193,8 @@ def root_link(member: Member) -> str:
 
 
 def with_root(node: NodeFacts, root: str) -> NodeFacts:
-    """Return the node with the root of the description as the frame that it places: a link that a
-    joint holds has a parent already."""
+    """Return the node with the description's root as the frame that it places."""
+    # A link that a joint holds has a parent already.
     placed = {it.child for it in node.sends}
     frames = (
         it._replace(default=root) if it.parameter in placed and it.default in BODY_FRAMES else it
@@ -206,9 +207,7 @@ RVIZ = "rviz2"
 
 
 class Described(NamedTuple):
-    """What a description has for the nodes of its robot: the transforms that its plugins send, the
-    topics of its sensors by type, its root, where a usual link of the body is below it, and the topics
-    of commands that bridges bring to it."""
+    """What a description has: transforms sent, sensor topics by type, root, bridged commands."""
 
     sent: tuple[Edge, ...]
     offered: Mapping[str, Sequence[str]]
@@ -237,14 +236,14 @@ def fitted(
     has: Described,
     spec: RobotSpec,
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes, those that are ``free`` with the settings that fit the others. ``own`` are
-    those that the build starts: what no file sets of them is the build's to set, too."""
+    """Return the nodes, with settings of ``free`` and ``own`` ones that fit the others."""
+    # ``own`` nodes are started by the build: what no file sets of them is the build's to set, too.
     offered = with_odometry(has.offered, nodes)
     settled = []
     for it in nodes:
         if it.name in free:
             hears = hearing_sensors(by_sensor(it, offered), nodes, offered)
-            settled.append(_settled(with_root(_as_listed(hears, spec), has.root)))
+            settled.append(_settled(with_root(_without_unlisted_names(hears, spec), has.root)))
         else:
             settled.append(it._replace(usual=()))
     muxes = own_mux(settled, own)
@@ -254,14 +253,13 @@ def fitted(
         led = driving(settled, muxes, has.bridged)
         settled = [*through_a_mux(led, own, usual, known[TWIST_MUX])]
     routed = by_way_of_relays(driving(settled, own, has.bridged), own)
-    typed = of_one_type(routed, own, free, given, known, spec)
+    rows = [it.end.type for it in command_rows(spec) if alone(it.end.name) in has.bridged]
+    typed = of_one_type(routed, own, free, given, known, rows)
     return tuple(without_second_senders(typed, free, has.sent))
 
 
-def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
-    """Return the node without the names that it makes of a list which no file gives it: they may come,
-    if a file is added. So may those of the panels and displays that RViz has in its usual file, where
-    the robot has another one."""
+def _without_unlisted_names(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
+    """Return the node without names that come from a list or file that the robot lacks."""
     if node.kind == MOVE_GROUP and spec.related_files.get("moveit"):
         return node
     shows = node.kind == RVIZ and bool(spec.related_files.get("rviz"))

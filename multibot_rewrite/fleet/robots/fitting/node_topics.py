@@ -22,8 +22,7 @@ _OF_A_PERSON = ("key", "teleop", "manual", "joy")
 
 
 class CommandEnd(NamedTuple):
-    """A node that sends or obeys velocities on a topic; the parameter that has the topic, and its name
-    in the code of the node."""
+    """A node that sends or obeys velocities on a topic, with its parameter and name in the code."""
 
     node: str
     role: str
@@ -76,7 +75,7 @@ def usual_values(node: NodeFacts) -> dict[str, Given]:
 
 
 def relays_of(ends: Iterable[CommandEnd]) -> dict[str, Sequence[CommandEnd]]:
-    """Return the inputs, by node, of those between a sender and the drive, such as muxes."""
+    """Return the inputs of nodes between senders and the drive, such as muxes, by node."""
     obeys: dict[str, list[CommandEnd]] = defaultdict(list)
     sends = set()
     for it in ends:
@@ -88,7 +87,7 @@ def relays_of(ends: Iterable[CommandEnd]) -> dict[str, Sequence[CommandEnd]]:
 
 
 def entry_of(topic: str, ends: Sequence[CommandEnd]) -> str:
-    """Return the topic on which a person's commands reach that one by way of all relays before it."""
+    """Return the topic where a user's commands enter the relays before this topic."""
     relays = relays_of(ends)
     sent = {it.topic for it in ends if it.role == PUBLISHES}
     before = {
@@ -102,7 +101,7 @@ def entry_of(topic: str, ends: Sequence[CommandEnd]) -> str:
 
 
 def _for_a_person(inputs: Sequence[CommandEnd], sent: Collection[str]) -> str:
-    """Return the topic of a person's input: by a word of its id or topic, else one without a sender."""
+    """Return the topic of an input for a user: by its name, else one without a sender."""
     texts = [(f"{it.parameter} {it.topic}".lower(), it.topic) for it in inputs]
     named = (topic for word in _OF_A_PERSON for text, topic in texts if word in text)
     unsent = (it.topic for it in inputs if it.topic not in sent)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.steps.collect import collect
@@ -24,6 +25,7 @@ from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.producers.ends import BridgeRow, bridge_rows
 from multibot_rewrite.producers.evidence.filling import lookup
+from multibot_rewrite.related_files.bridge import GZ_MODEL
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import ODOMETRY
 
@@ -69,29 +71,43 @@ def bridge_rows_of(spec: RobotSpec) -> Iterator[BridgeRow]:
 
 def bridged_commands(member: Member, spec: RobotSpec) -> dict[str, str]:
     """Return the types of commands that go to the simulator, by the topics of the robot's own bridge
-    files; then those that the description names besides, for which the build has rows."""
-    rows = [it for it in bridge_rows_of(spec) if it.end.role == SUBSCRIBES]
+    files; then those that the description names besides, for which the build has rows. Where it has a
+    drive, other rows with velocities are for something else."""
+    rows = command_rows(spec)
     if spec.simulator == REAL or not rows:
         return {}
-    own = {_alone(it.inside): (it.end.name, it.end.type) for it in rows}
-    made, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)
-    named = (it for it in made if it.direction == DIRECTIONS["out"] and not it.is_free)
-    every = own | {_alone(it.gz): (it.ros, it.ros_type) for it in named} | own
-    return {_alone(name): type_ for name, type_ in every.values() if type_ in COMMANDS}
+    own = {alone(it.inside): (it.end.name, it.end.type) for it in rows}
+    made, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING, {"": "robot"})
+    led = [it for it in made if it.direction == DIRECTIONS["out"] and it.ros_type in COMMANDS]
+    named = {alone(it.gz): (it.ros, it.ros_type) for it in led if not it.is_free}
+    drives = {alone(it.gz) for it in led} or own.keys()
+    every = [it for inside, it in (own | named | own).items() if inside in drives]
+    return {alone(name): type_ for name, type_ in every if type_ in COMMANDS}
 
 
-def _alone(name: str) -> str:
-    return name.rpartition("<namespace>/")[2].strip("/")
+def command_rows(spec: RobotSpec) -> list[BridgeRow]:
+    """Return the rows of the robot's own bridge files that bring something to the simulator, without
+    those for a model of another robot."""
+    rows = [it for it in bridge_rows_of(spec) if it.end.role in ("", SUBSCRIBES)]
+    models = [found["model"] for it in rows if (found := GZ_MODEL.fullmatch(it.inside))]
+    others = {it for it in models if it != models[0] and not PLACEHOLDER.search(it)}
+    return [it for it in rows if others.isdisjoint(it.inside.split("/"))]
+
+
+def alone(name: str) -> str:
+    """Return a topic without the placeholder of the robot, or of a model: ``model/cmd_vel``."""
+    found = GZ_MODEL.fullmatch(name)
+    return f"model{found['rest']}" if found else name.rpartition("<namespace>/")[2].strip("/")
 
 
 def wanted(node: NodeFacts, end: Endpoint) -> str:
     """Return what an end hears; empty for none that a sensor sends, whatever else comes."""
     terms = (it for all_ in parse_condition(end.when) for it in all_)
     is_asked = end.role == SUBSCRIBES and all(it.parameter == HEARD for it in terms)
-    return _kind(node, end) if is_asked else ""
+    return _image_kind(node, end) if is_asked else ""
 
 
-def _kind(node: NodeFacts, end: Endpoint) -> str:
+def _image_kind(node: NodeFacts, end: Endpoint) -> str:
     deep = _DEPTH in f"{node.package}/{end.name}"
     of_depths = end.type == IMAGE and deep and end.name.partition("/")[0] not in _OF_COLOURS
     return DEPTHS if of_depths else end.type
@@ -100,13 +116,13 @@ def _kind(node: NodeFacts, end: Endpoint) -> str:
 def sent_as(nodes: Iterable[NodeFacts], kind: str) -> Collection[str]:
     """Return the topics that nodes surely send, without images of another kind."""
     every = ((node, it) for node in nodes for it in node.endpoints if it.role == PUBLISHES)
-    given = (it for it in every if not it[1].when and {kind, _kind(*it)} != {IMAGE, DEPTHS})
+    given = (it for it in every if not it[1].when and {kind, _image_kind(*it)} != {IMAGE, DEPTHS})
     return {topic_of(*it) for it in given}
 
 
 def by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFacts:
-    """Return the node with the parameters by which it uses the sensors that its robot has one of; the
-    first in its entry count."""
+    """Return the node with the parameters for the sensors that its robot has one of."""
+    # The first in its entry count.
     chosen = [it for type_, it in node.by_sensor if len(offered.get(type_, ())) == 1]
     usual = dict((*node.usual, *(one for it in reversed(chosen) for one in it)))
     if not (node.by_sensor and usual):

@@ -20,8 +20,8 @@ Look = tuple[tuple[float, ...] | str, str]
 
 @rule("MB131", "undefined-material", WARNING)
 def undefined_material(subject: Subject) -> Iterator[Problem]:
-    """Read in urdfdom's order: the robot's own materials first, then those of visuals."""
-    tops = _materials(subject.elements)
+    """Report materials without a definition, by urdfdom's order: the robot's own first."""
+    tops = _robot_materials(subject.elements)
     bare = [it for it in tops if not _defines(it)]
     # Elements that another rule reports, for themselves or for a child.
     elements = [it.element for it in urdf_faults(subject)] if bare else []
@@ -32,7 +32,7 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
             yield Problem(material, f"material {name!r} has neither colour nor texture", "name")
     defined = dict.fromkeys(it.get("name", "") for it in tops)
     guesses = Guesses()
-    for look in _looks(subject):
+    for look in _visual_materials(subject):
         name = look.get("name", "")
         if name in defined or not name:
             continue
@@ -44,12 +44,12 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
         yield from lacking(subject, [Problem(look, message, "name", hint, level=WARNING)])
 
 
-def _materials(elements: Elements) -> Sequence[etree._Element]:
+def _robot_materials(elements: Elements) -> Sequence[etree._Element]:
     return elements.tops("material") if elements.root.tag == "robot" else ()
 
 
 @memoized
-def _looks(subject: Subject) -> list[etree._Element]:
+def _visual_materials(subject: Subject) -> list[etree._Element]:
     """Return the named materials of visuals."""
     root = subject.document.root
     links = set(subject.elements.tops("link")) if root.tag == "robot" else set()
@@ -59,24 +59,25 @@ def _looks(subject: Subject) -> list[etree._Element]:
 
 
 def _defines(material: etree._Element) -> bool:
+    """Return whether a material has a colour or a texture."""
     return any(it.get("rgba") or it.get("filename") for it in material.iterchildren("*"))
 
 
 @rule("MB132", "material-differs", WARNING)
 def material_differs(subject: Subject) -> Iterator[Problem]:
     """Report each visual whose own definition is ignored."""
-    looks = [it for it in _looks(subject) if len(it) and it.get("name") and _defines(it)]
-    tops = _materials(subject.elements) if looks else []
-    first = {it.get("name", ""): _look(it) for it in reversed(tops)}
+    looks = [it for it in _visual_materials(subject) if len(it) and it.get("name") and _defines(it)]
+    tops = _robot_materials(subject.elements) if looks else []
+    first = {it.get("name", ""): _colour_and_texture(it) for it in reversed(tops)}
     for material in looks:
-        name, look = material.get("name", ""), _look(material)
+        name, look = material.get("name", ""), _colour_and_texture(material)
         if first.setdefault(name, look) != look:
             hint = "the first definition of the name is used"
             message = f"material {name!r} has another colour or texture than its first definition"
             yield Problem(material, message, "name", hint)
 
 
-def _look(material: etree._Element) -> Look:
+def _colour_and_texture(material: etree._Element) -> Look:
     """Return the colour and the texture of a material."""
     parts = {it.tag: it for it in reversed(material)}
     color, texture = parts.get("color"), parts.get("texture")

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that cannot be read, or are not a robot description as they are; the XML declaration, byte
-order mark and namespaces.
-"""
+"""Files that cannot be read or are no robot description yet; XML declaration, BOM and namespaces."""
 
 from __future__ import annotations
 

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Elements, attributes and parameters that their readers do not expect, or miss; values that they
-reject, misread, or take for something else; what a ``<plugin>`` or ``<hardware>`` loads: a library
-without a name, a class that it does not have.
-"""
+"""Elements, attributes, values and loaded classes that their readers do not expect, miss or misread."""
 
 from __future__ import annotations
 
@@ -132,17 +129,17 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
     """Report pictures without a pixel, scans without a ray, negative rates, ranges in millimetres."""
     for sensor in subject.elements.every("sensor"):
         type_ = sensor.get("type", "")
-        yield from _none_of(sensor)
+        yield from _not_positive(sensor)
         for inner in sensor.iterchildren("camera") if type_ in CAMERAS else ():
-            yield from _none_of(inner, _ABOVE_0["camera"])
+            yield from _not_positive(inner, _ABOVE_0["camera"])
         for inner in sensor.iterchildren("lidar", "ray") if type_ in LIDARS else ():
             # One that a camera draws (gz-sensors GpuLidarSensor.cc, SetNearClipPlane).
             drawn = ("range/min",) * type_.startswith("gpu_")
-            yield from _none_of(inner, (*_ABOVE_0["lidar"], *drawn))
+            yield from _not_positive(inner, (*_ABOVE_0["lidar"], *drawn))
             near, far = number_at(inner, "range/min"), number_at(inner, "range/max")
             if near is not None and far is not None and near >= BLIND and far >= FAR:
                 hint = "divide by 1000: are these millimetres?"
-                yield _problem(inner, "range/max", "is a length in metres", hint)
+                yield _number_problem(inner, "range/max", "is a length in metres", hint)
 
 
 def unusable_numbers(subject: Subject) -> Iterator[Problem]:
@@ -151,7 +148,7 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
     for physics in every("physics"):
         above = physics.getparent()
         if above is not None and above.tag == "world":
-            yield from _none_of(physics, ("max_step_size",))
+            yield from _not_positive(physics, ("max_step_size",))
     for element in every("mechanicalReduction", "mechanical_reduction"):
         if number(text_of(element)) == 0:
             yield Problem(element, f"{element.tag} is 0, by which is divided", level=WARNING)
@@ -169,15 +166,17 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
                 yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
 
 
-def _none_of(inner: _Element, paths: tuple[str, ...] = ()) -> Iterator[Problem]:
-    """Yield the numbers at these paths that are not above 0, and the path below each."""
+def _not_positive(inner: _Element, paths: tuple[str, ...] = ()) -> Iterator[Problem]:
+    """Yield a problem for each number at these paths that is not above 0, and for negative ones."""
     for path in (*paths, *_NOT_BELOW_0):
         value = number_at(inner, path)
         if value is not None and (value < 0 or (value == 0 and path in paths)):
-            yield _problem(inner, path, "has to be above 0" if path in paths else "is below 0")
+            yield _number_problem(
+                inner, path, "has to be above 0" if path in paths else "is below 0"
+            )
 
 
-def _problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:
+def _number_problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:
     element = above.find(path)
     assert element is not None
     message = f"{element.tag} is {(element.text or '').strip()}, which {words}"
@@ -216,8 +215,7 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
 def _misspelt_library(
     subject: Subject, plugin: _Element, library: str, name: str
 ) -> Iterator[Problem]:
-    """Report an unknown library of a known class if the class is in a library with nearly this name.
-    It is a note if the library is not called like those of Gazebo: it may be the user's own."""
+    """Report an unknown library whose class is known in a library with nearly this name."""
     definitions = subject.tree.definitions
     if "::" not in name or definitions.values(library) or definitions.find("plugin", library):
         return
@@ -236,20 +234,19 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
         if host.element.tag != "plugin" or not section or not is_unknown(section) or not name:
             continue
         key = library_key(name.rpartition("/")[2])
-        if near := _slip_of_library(key, subject.tree.definitions.names("plugin")):
+        if near := _meant_library(key, subject.tree.definitions.names("plugin")):
             message = f"no known plugin is called {name!r}"
             level = "" if key.startswith(tuple(start for start, _ in FAMILIES)) else NOTE
             yield Problem(host.element, message, "filename", f"did you mean {near!r}?", level=level)
 
 
 def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
-    """Yield the classes without a plugin definition that are in none of the sources; another
-    package may have what the known ones do not."""
+    """Yield classes that nothing defines and that are nearly a known one's name."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterfind("hardware/plugin"):
             name = text_of(it)
             known = [*subject.tree.definitions.names("hardware")]
-            near = "" if name in known or "$" in name else _slip(name, known)
+            near = "" if name in known or "$" in name else _meant_name(name, known)
             package = name.partition("/")[0]
             level = "" if any(it.startswith(f"{package}/") for it in known) else NOTE
             if near and not (level and _is_in_sources(subject, package)):
@@ -279,7 +276,7 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
         yield Problem(found[0], message, "filename", hint, level=level)
 
 
-def _slip_of_library(name: str, known: Iterable[str]) -> str:
+def _meant_library(name: str, known: Iterable[str]) -> str:
     """Return the known library that was meant; what all of a family share does not make two alike."""
     start, end = next((it for it in FAMILIES if name.startswith(it[0])), ("", ""))
     stems = {
@@ -287,10 +284,10 @@ def _slip_of_library(name: str, known: Iterable[str]) -> str:
         for it in known
         if it.startswith(start) and "::" not in it
     }
-    return stems.get(_slip(name.removeprefix(start).removesuffix(end), stems), "")
+    return stems.get(_meant_name(name.removeprefix(start).removesuffix(end), stems), "")
 
 
-def _slip(name: str, known: Iterable[str]) -> str:
+def _meant_name(name: str, known: Iterable[str]) -> str:
     """Return the known name that was meant; empty if one is part of the other, or another word."""
     near = slip_of(name, known)
     part = near in name or name in near

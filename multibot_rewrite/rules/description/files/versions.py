@@ -44,18 +44,18 @@ def no_rotation(subject: Subject) -> Iterator[Problem]:
 @rule("MB128", "needs-later-version", WARNING)
 def needs_later_version(subject: Subject) -> Iterator[Problem]:
     """Report what needs a later URDF version, with a fix that keeps the pose in the file."""
-    hint = 'write version="1.1" in <robot>' if _reads(subject) >= QUATERNIONS else ""
+    hint = 'write version="1.1" in <robot>' if _version_read(subject) >= QUATERNIONS else ""
     for it in faults("needs-later-version", subject):
-        yield it._replace(edits=_read_now(subject, it.element), hint=hint)
+        yield it._replace(edits=_readable_edits(subject, it.element), hint=hint)
 
 
-def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
+def _readable_edits(subject: Subject, element: _Element) -> tuple[Edit, ...]:
     """Return the edits that make the release's urdfdom read an element of a later version."""
     text = _text(subject)
     link = next(element.iterancestors("link"), None)
     if element.tag == versions.CAPSULE:
         return () if link is None else convert.capsule_edits(text, link)
-    if element.get("rpy") is None and _reads(subject) >= QUATERNIONS:
+    if element.get("rpy") is None and _version_read(subject) >= QUATERNIONS:
         return _raised_version(subject)
     return convert.as_rpy(text, element)
 
@@ -64,7 +64,7 @@ def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
 def ignored_limit(subject: Subject) -> Iterator[Problem]:
     """Report limits that came with version 1.2; one finding for a <limit>."""
     newest = versions.KNOWN[-1]
-    reads = _reads(subject)
+    reads = _version_read(subject)
     hint = (
         f'write version="{newest}" in <robot>'
         if reads >= newest
@@ -85,7 +85,7 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
 def version_of_release(subject: Subject) -> Iterator[Problem]:
     """Report a URDF version that the release lacks, with a fix if 1.0 means the same."""
     root = subject.document.root
-    declared, reads = versions.read_version(root.get("version", "")), _reads(subject)
+    declared, reads = versions.read_version(root.get("version", "")), _version_read(subject)
     if root.tag == "robot" and declared in versions.KNOWN and declared > reads:
         reader = versions.reader_of(subject.settings.distro, versions.URDFDOM)
         message = f"URDF {declared} is not read by {reader}, which rejects the file"
@@ -132,7 +132,10 @@ def _links_with_capsules(
     subject: Subject, *holders: str
 ) -> Iterator[tuple[_Element, list[_Element]]]:
     """Yield the links with capsules that urdfdom reads; with ``holders`` only capsules inside those."""
-    if versions.version_of(subject.document.root) < QUATERNIONS or _reads(subject) < QUATERNIONS:
+    if (
+        versions.version_of(subject.document.root) < QUATERNIONS
+        or _version_read(subject) < QUATERNIONS
+    ):
         return
     for link in subject.document.root.iterchildren("link"):
         shapes = [
@@ -142,13 +145,14 @@ def _links_with_capsules(
             yield link, shapes
 
 
-def _reads(subject: Subject) -> versions.Version:
+def _version_read(subject: Subject) -> versions.Version:
     """Return the highest version that the release's urdfdom reads."""
     return versions.highest_version(subject.settings.distro)
 
 
 @memoized
 def _text(subject: Subject) -> convert.Spanned:
+    """Return the description's text, with where its elements start."""
     return convert.text_of(subject.document)
 
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files and packages that do not exist; how large the meshes of a description are, and where they
-end.
-"""
+"""Files and packages that do not exist; how large the meshes are, and where they end."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -41,8 +39,7 @@ _INSTALLED = lazy_compile(
 
 
 class MeshFile(NamedTuple):
-    """A file that was looked for: the folders it may be below, its path there, and the path as it
-    is on the disk, empty where it does not exist."""
+    """A file that was looked for: folders, path below them, and path on the disk, empty if missing."""
 
     used: Used
     folders: tuple[str, ...]
@@ -56,11 +53,12 @@ def lookups(subject: Subject) -> tuple[MeshFile, ...]:
     file, roots = subject.document.file.removesuffix(EXPANDED), subject.settings.roots
     first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
     asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
-    folders_of = cache(lambda name, first: _packages(name, first, file, roots))
+    folders_of = cache(lambda name, first: _package_folders(name, first, file, roots))
     return tuple(_looked_up(it, *_search_path(it, file, folders_of)) for it in asked)
 
 
 def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> MeshFile:
+    """Return the file that a path below some folders is."""
     if not folders:
         return MeshFile(it, folders, path, "")
     found = [find_in(folder, path) for folder in folders]
@@ -106,7 +104,7 @@ def _unquoted_path(path: str) -> str:
     return unquote(path)
 
 
-def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
+def _package_folders(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
     """Return the folders that may be a package; ``first`` is the first folder of a path below it."""
     found = ((it, entries(it)) for it in package_folders(name, file, roots))
     # A folder without a manifest must at least have that.
@@ -122,7 +120,7 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
     """Report missing files of packages that were found, and missing relative ones."""
     lost = (it for it in lookups(subject) if it.folders and not it.found)
     alike = lists_by_key(
-        (_missing_folder(it) or (it.path,), it) for it in lost if not _elsewhere(subject, it)
+        (_missing_folder(it) or (it.path,), it) for it in lost if not _uri_elsewhere(subject, it)
     )
     for first, *others in alike.values():
         folder = os.path.join(first.folders[0], os.path.dirname(first.path))
@@ -147,12 +145,12 @@ def _missing_folder(it: MeshFile) -> tuple[str, ...]:
 def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
     """Report relative files that are in the package, but not where the path says."""
     for it in lookups(subject):
-        found = _elsewhere(subject, it) if it.folders and not it.found else ""
+        found = _uri_elsewhere(subject, it) if it.folders and not it.found else ""
         if found:
             yield problem(it.used, f"{it.used.name!r} is not there from here", f"use {found}")
 
 
-def _elsewhere(subject: Subject, it: MeshFile) -> str:
+def _uri_elsewhere(subject: Subject, it: MeshFile) -> str:
     """Return the package URI of a relative file that exists elsewhere in its package, or empty."""
     file = os.path.abspath(subject.document.file.removesuffix(EXPANDED))
     own = package_of(file) if it.used.scheme == "" else None
@@ -197,7 +195,7 @@ HINT_OF_UNIT = 'correct <unit meter> in the file, or add scale="0.001 0.001 0.00
 
 def box_of(subject: Subject, mesh: _Element, whole: bool = True) -> Extent | None:
     """Return the box around a ``<mesh>`` in its own frame, in metres; as ``mesh_box``."""
-    path = _paths(subject).get((mesh.get("filename") or "").strip(), "")
+    path = _mesh_paths(subject).get((mesh.get("filename") or "").strip(), "")
     box = mesh_box(path, whole) if path else None
     if box is None or "scale" not in mesh.attrib:
         return box
@@ -210,7 +208,7 @@ def box_of(subject: Subject, mesh: _Element, whole: bool = True) -> Extent | Non
 
 
 @memoized
-def _paths(subject: Subject) -> Mapping[str, str]:
+def _mesh_paths(subject: Subject) -> Mapping[str, str]:
     """Return where the meshes are on the disk, by the name in the description."""
     asked = (
         (it, [os.path.join(above, it.found) for above in it.folders]) for it in lookups(subject)
@@ -258,6 +256,7 @@ def mesh_box(path: str, whole: bool = True) -> Extent | None:
 
 @lru_cache(maxsize=1024)
 def _box(path: str, state: tuple[int, ...], whole: bool) -> Extent | None:
+    """Return ``mesh_box`` for a file in that state, which the result is kept for."""
     size = state[1]
     if whole and size > MOST_BYTES:
         return None

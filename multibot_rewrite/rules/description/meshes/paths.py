@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mesh and texture files that a description names, and how: absolute paths, schemes,
-backslashes, formats that not every program reads.
-"""
+"""The mesh and texture files that a description names: absolute paths, schemes, odd formats."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -24,8 +22,10 @@ _MACHINE = lazy_compile(r"/|[A-Za-z]:[/\\]")
 
 
 class Used(NamedTuple):
-    """A mesh or texture; ``scheme`` is what is before ``://``, ``file`` for a path from the
-    root of the disk, empty for a relative one. ``path`` is the rest of it."""
+    """A mesh or texture.
+
+    ``scheme`` is what is before ``://``, ``file`` for a path from the root of the disk, empty for a
+    relative one. ``path`` is the rest of it."""
 
     element: _Element
     name: str
@@ -39,10 +39,11 @@ def used_files(subject: Subject) -> tuple[Used, ...]:
     tags, elements = ("mesh", "texture"), subject.elements
     files = elements.root.iter(*tags) if elements.every("texture") else elements.every("mesh")
     found = ((it, it.get("filename")) for it in files)
-    return tuple(_read(it, name.strip()) for it, name in found if name and name.strip())
+    return tuple(_used_file(it, name.strip()) for it, name in found if name and name.strip())
 
 
-def _read(element: _Element, name: str) -> Used:
+def _used_file(element: _Element, name: str) -> Used:
+    """Return the file that an element names, with the parts of its name."""
     if scheme := _SCHEME.match(name):
         return Used(element, name, scheme[1].lower(), name[scheme.end() :])
     if name.lower().startswith(_SHORT):
@@ -146,7 +147,7 @@ PARTLY = {ending: said for (ending,), said in ROWS["meshes"]}
 def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
     """Report extensions of meshes that no program knows."""
     for it in _meshes(subject):
-        ending = _ending(it)
+        ending = _extension(it)
         if ending not in ("stl", "dae", "obj") and ending not in PARTLY:
             fault = f"no program can load .{ending}" if ending else "it has no extension"
             yield problem(it, f"{it.name!r}: {fault}", "use .stl, .dae or .obj")
@@ -157,7 +158,7 @@ def _meshes(subject: Subject) -> list[Used]:
     return [it for it in used if it.element.tag == "mesh" and "$" not in it.name]
 
 
-def _ending(it: Used) -> str:
+def _extension(it: Used) -> str:
     base = it.name.replace("\\", "/").rpartition("/")[2]
     return base.rpartition(".")[2].lower() if "." in base else ""
 
@@ -167,7 +168,7 @@ def mesh_format_partly(subject: Subject) -> Iterator[Problem]:
     """Report each mesh format that only some programs read, once."""
     seen = set()
     for it in _meshes(subject):
-        ending = _ending(it)
+        ending = _extension(it)
         if ending in PARTLY and ending not in seen:
             seen.add(ending)
             yield problem(it, f"{it.name!r}: {PARTLY[ending]}", "use .stl, .dae or .obj")

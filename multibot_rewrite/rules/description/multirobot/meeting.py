@@ -23,7 +23,7 @@ IN_FRONT = make_naming("postfix", affix="prefix")
 
 
 @memoized
-def _shared(subject: Subject) -> tuple[Problem, ...]:
+def _shared_names(subject: Subject) -> tuple[Problem, ...]:
     """Return what a rewrite for the named robots would report; nothing where it would be refused."""
     if not subject.settings.robots:
         return ()
@@ -46,7 +46,7 @@ def _shared(subject: Subject) -> tuple[Problem, ...]:
 
 
 def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
-    return (it for it in _shared(subject) if it.code == code)
+    return (it for it in _shared_names(subject) if it.code == code)
 
 
 def _rule_for_left_names(known: Rule, naming: Naming = APART) -> Rule:
@@ -56,8 +56,8 @@ def _rule_for_left_names(known: Rule, naming: Naming = APART) -> Rule:
     return own._replace(level=WARNING, check=partial(_of_code, known.code))
 
 
-def _of_descriptions(code: str, name: str, naming: Naming) -> Rule:
-    """Return a rule that no running system is asked."""
+def _rule_for_descriptions(code: str, name: str, naming: Naming) -> Rule:
+    """Return a rule about descriptions alone: no running system is asked."""
     options = {"robots": TWO, "naming": naming}
     return declare(code, name, WARNING, partial(_of_code, code), options=options)
 
@@ -69,8 +69,10 @@ shared_command = _rule_for_left_names(commands.command_for_several_robots)
 shared_service = _rule_for_left_names(names.service_of_two_nodes)
 controllers_apart = _rule_for_left_names(way_checks.NOT_TAKEN, ODOMETRY_APART)
 
-sensor_names_collide = _of_descriptions("MB425", "lookup-in-the-world", AS_WRITTEN)
-lost_rule = _of_descriptions("MB436", "lost-remap-rule", IN_FRONT)
-same_text = _of_descriptions("MB437", "same-text-for-all", AS_WRITTEN)
-parted_topic = _of_descriptions("MB438", "parted-topic", APART)
-camera_info_elsewhere = _of_descriptions("MB439", "camera-info-elsewhere", make_naming("postfix"))
+sensor_names_collide = _rule_for_descriptions("MB425", "lookup-in-the-world", AS_WRITTEN)
+lost_rule = _rule_for_descriptions("MB436", "lost-remap-rule", IN_FRONT)
+same_text = _rule_for_descriptions("MB437", "same-text-for-all", AS_WRITTEN)
+parted_topic = _rule_for_descriptions("MB438", "parted-topic", APART)
+camera_info_elsewhere = _rule_for_descriptions(
+    "MB439", "camera-info-elsewhere", make_naming("postfix")
+)

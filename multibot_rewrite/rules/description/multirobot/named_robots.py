@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a rewrite for the named robots rejects or warns about; files, devices, sensors and systems
-of the world that exist only once."""
+"""What a rewrite for the named robots refuses or warns about, and devices that exist only once."""
 
 from __future__ import annotations
 
@@ -25,7 +24,6 @@ from multibot_rewrite.rules.description.multirobot.topics import (
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
-from multibot_rewrite.system.records import NOWHERE
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
@@ -37,19 +35,19 @@ Hazard = Callable[[Inventory, "RenameMap"], Iterable[Problem]]
 ByNaming = Callable[[Inventory, Naming], Iterable[Problem]]
 
 
-def _by_naming(hazard: ByNaming) -> Hazard:
+def _hazard_by_naming(hazard: ByNaming) -> Hazard:
     """Return a check of inventory and renames from one that needs only the naming."""
     return lambda inventory, renames: hazard(inventory, renames.naming)
 
 
-def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
+def _hazards_of_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
     """Yield what a rewrite for the named robots warns about; nothing where none are named."""
     if subject.settings.robots:
         yield from hazard(subject.inventory, rename_map(subject))
 
 
 joints_reordered = rule("MB405", "joints-reordered", WARNING, options=OF_TWO)(
-    partial(_if_robots, hazards.reordered)
+    partial(_hazards_of_robots, hazards.reordered)
 )
 
 
@@ -79,16 +77,16 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
 
 
 prefix_only = rule("MB422", "prefix-only", WARNING, formats=(URDF, PARAMS, MOVEIT), options=OF_TWO)(
-    partial(_if_robots, _by_naming(hazards.prefix_only))
+    partial(_hazards_of_robots, _hazard_by_naming(hazards.prefix_only))
 )
 
 off_the_shared_tf = rule(
     "MB423", "off-the-shared-tf", WARNING, options={"robots": TWO, "naming": ONE_TF}
-)(partial(_if_robots, _by_naming(hazards.moved_tf)))
+)(partial(_hazards_of_robots, _hazard_by_naming(hazards.moved_tf)))
 
 shared_below_namespace = rule(
     "MB430", "shared-below-namespace", WARNING, options={"robots": TWO, "naming": SHARED_SCAN}
-)(partial(_if_robots, _by_naming(hazards.shared_below)))
+)(partial(_hazards_of_robots, _hazard_by_naming(hazards.shared_below)))
 
 
 @rule("MB424", "collision-number-unstable", ERROR, options=OF_TWO)
@@ -126,10 +124,10 @@ fixed_to_own_frame = rule(
     WARNING,
     formats=(SRDF,),
     options={"robots": TWO, "urdf": "r.urdf"},
-)(partial(_if_robots, hazards.outside_frames))
+)(partial(_hazards_of_robots, hazards.outside_frames))
 
 hard_wired_name = rule("MB428", "hard-wired-name", WARNING, options=OF_TWO)(
-    partial(_if_robots, hazards.hardwired)
+    partial(_hazards_of_robots, hazards.hardwired)
 )
 
 
@@ -155,13 +153,13 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
 
 
 def _one_device(subject: Subject) -> Iterator[Problem]:
-    """Yield what the hardware opens and every robot shares, for classes without a definition. The
-    parameter's name or value shows that it is a device or address."""
+    """Yield what unknown hardware opens and every robot shares: a device or an address."""
     root = subject.document.root
     if root.find("ros2_control") is None:
         return
     params = [*root.iterfind("ros2_control/hardware/param")]
     from multibot_rewrite.producers.addresses import of_hardware  # most descriptions have none
+    from multibot_rewrite.system.records import NOWHERE
 
     starts = starts_of(subject, params)
     held = {(it.get("name", ""), (it.text or "").strip()): it for it in params}
@@ -183,7 +181,7 @@ one_device = declaration.ONE_DEVICE._replace(
 
 @rule("MB415", "sensor-found-by-bare-name", NOTE)
 def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
-    """Report such sensors only if no robots are named: otherwise MB425 knows if names differ."""
+    """Report sensors that are found by their name alone, if no robots are named: then it is MB425."""
     sensors = subject.inventory.declared["sensor"].values()
     if subject.settings.robots or not any(claim_is_fixed(subject, it) for it in sensors):
         return

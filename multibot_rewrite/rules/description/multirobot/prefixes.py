@@ -42,8 +42,7 @@ class WrittenName(NamedTuple):
 class Scope(NamedTuple):
     """The names in one macro, or outside of all of them (``macro`` is None then).
 
-    ``prefix_names`` are its prefixes and the properties made from them.
-    """
+    ``prefix_names`` are its prefixes and the properties made from them."""
 
     macro: _Element | None
     prefix_names: frozenset[str]
@@ -72,12 +71,14 @@ def scopes(root: _Element) -> list[Scope]:
         if tag in ("link", "joint"):
             declares = _declares(element)
             if name := element.get("name"):
-                (scope.declared if declares else scope.used).append(_name_at(element, "name", name))
+                (scope.declared if declares else scope.used).append(
+                    _written_name(element, "name", name)
+                )
             continue
         attribute = _REFERENCES[tag]
         value = element.get(attribute) if attribute else element.text
         if value and value.strip():
-            scope.used.append(_name_at(element, attribute, value.strip()))
+            scope.used.append(_written_name(element, attribute, value.strip()))
     return list(found.values())
 
 
@@ -89,7 +90,7 @@ def _declares(element: _Element) -> bool:
     return above is not None and (above.tag == "robot" or is_xacro(above))
 
 
-def _name_at(element: _Element, attribute: str, text: str) -> WrittenName:
+def _written_name(element: _Element, attribute: str, text: str) -> WrittenName:
     words = frozenset(_names_in(text) if "$" in text else ())
     return WrittenName(element, attribute, text, words)
 
@@ -219,6 +220,7 @@ def _calls_others(macro: _Element) -> bool:
 
 
 def _hint(scope: Scope, text: str) -> str:
+    """Return how to write a name with the prefix, as another name of the scope has it."""
     own = next((it for it in scope.declared if it.words & scope.prefix_names), None)
     found = SUBSTITUTIONS.search(own.text) if own else None
     return f"use {found[0] + text!r}" if found else "put the prefix in front"

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics, namespaces, frames and tf that two robots of one description would share, those of Gazebo
-itself, and the robot description that plugins read.
-"""
+"""Topics, namespaces, frames and descriptions that two robots of one description would share."""
 
 from __future__ import annotations
 
@@ -33,8 +31,7 @@ ONE_TF = make_naming("frames-per-robot")
 
 
 def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
-    """Return claims whose first kind is one of ``kinds``, which are no names of links or joints;
-    only plugins, sensors and hardware have them."""
+    """Return claims whose first kind is one of ``kinds`` and that name no link or joint."""
     by_kind = _claims_by_kind(subject) if subject.inventory.hosts else {}
     found = [it for kind in kinds for it in by_kind.get(kind, ())]
     return [claim for _, claim in sorted(found, key=itemgetter(0))]
@@ -112,7 +109,7 @@ def absolute_topic(subject: Subject) -> Iterator[Problem]:
     shared = subject.settings.naming.shared_topics | set(TF_TOPICS)
     for claim in claims_of(subject, ROS_KINDS):
         name = _target(claim)
-        if name[:1] != "/" or not is_plain(name) or _is_gz(claim) or name.strip("/") in shared:
+        if name[:1] != "/" or not is_plain(name) or _is_of_gz(claim) or name.strip("/") in shared:
             continue
         # MB426 reports these.
         above = claim.element.iterancestors("plugin") if claim.site.form in REMAP_FORMS else ()
@@ -133,7 +130,7 @@ def _target(claim: Claim) -> str:
 @rule("MB402", "gz-topic-shared", NOTE)
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Report literal gz topics."""
-    claims = [it for it in claims_of(subject, ROS_KINDS) if _is_gz(it)]
+    claims = [it for it in claims_of(subject, ROS_KINDS) if _is_of_gz(it)]
     if not claims or _is_classic(subject):
         return
     for claim in claims:
@@ -145,7 +142,7 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
             yield Problem(claim.element, message, claim.attribute, hint)
 
 
-def _is_gz(claim: Claim) -> bool:
+def _is_of_gz(claim: Claim) -> bool:
     return claim.site.section.startswith(GZ_SECTIONS)
 
 

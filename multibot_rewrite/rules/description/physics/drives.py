@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drives against the robot: where their wheels are, how large, which way they turn, their grip; and
-what gravity does: torques beyond a motor's effort, wheels that do not carry the robot.
-"""
+"""Drives against the robot: wheels, their sizes, directions and grip; gravity against motors."""
 
 from collections.abc import Iterator, Mapping
 from math import dist, pi
@@ -45,21 +43,20 @@ ENDLESS = 20 * pi
 
 @rule("MB620", "wheel-size", WARNING)
 def wheel_size(subject: Subject) -> Iterator[Problem]:
-    """Yield drives whose wheel distance or radius differs from the description's. The distance is
-    that of the first pair, the radius that of round shapes of all wheels."""
+    """Yield drives whose wheel distance (first pair) or radius (all) differs from the description's."""
     for drive in drives(subject):
         tags, robot = drive.tags, drive.robot
         value = size_of(drive, tags.separation, tags.defaults[0])
         found = separation(robot, *drive.pairs[0], bool(drive.left[1:]))
         if value is not None and value > 0 and found and not found.holds(value):
-            yield _size(drive, tags.separation, value, "the wheels are", found.best)
+            yield _size_problem(drive, tags.separation, value, "the wheels are", found.best)
         value, unit = size_of(drive, tags.radius, tags.defaults[1]), tags.radius_of
         found = radius(robot, (*drive.left, *drive.right))
         if value is not None and value > 0 and found and not found.holds(value * unit):
-            yield _size(drive, tags.radius, value, "the wheels have", found.best / unit)
+            yield _size_problem(drive, tags.radius, value, "the wheels have", found.best / unit)
 
 
-def _size(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
+def _size_problem(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
     element = drive.sizes[name]
     said = "" if element is not None else "not said, and "
     apart = " apart" if "sep" in name.lower() else ""
@@ -70,8 +67,7 @@ def _size(drive: Drive, name: str, value: float, words: str, measured: float) ->
 
 @rule("MB622", "wheels-turn-wrong", WARNING)
 def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
-    """Yield the drives whose wheels turn the wrong way: left and right are swapped, or the axes of
-    a pair are opposite in the robot's frame."""
+    """Yield drives whose left and right are swapped, or whose axes of a pair are opposite."""
     for drive in drives(subject):
         left, right = drive.pairs[0]
         way = are_swapped(left, right) if drive.tags.turns_left else 0.0
@@ -97,11 +93,11 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
 def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
     """Report each joint that a drive names as a wheel and that cannot turn."""
     for element, joint in wheel_joints(subject):
-        if fault := _fault_of(joint):
+        if fault := _why_not_turning(joint):
             yield Problem(element, f"wheel joint {joint.name!r} {fault}", "", "make it continuous")
 
 
-def _fault_of(joint: Joint) -> str:
+def _why_not_turning(joint: Joint) -> str:
     if joint.type in ("fixed", "prismatic"):
         return f"is {joint.type}: it cannot turn"
     limit = joint.parts.get("limit")
@@ -159,24 +155,23 @@ DRIVEN = ("revolute", "continuous", "prismatic")
 
 @rule("MB633", "too-weak-for-gravity", NOTE)
 def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
-    """Report driven joints with an effort that are not balanced at 0, if 0 is within their limits.
-    Without any known drive all joints count as driven."""
+    """Report driven joints whose effort does not hold their load at 0; without a drive all joints."""
     driven = driven_joints(subject)
     for joint in subject.robot.joints:
         if driven and joint.name not in driven:
             continue
         limit = joint.parts.get("limit")
         effort = None if limit is None else value_of(limit, "effort")
-        if limit is None or not effort or effort < 0 or _most(subject, joint) <= effort:
+        if limit is None or not effort or effort < 0 or _most_load(subject, joint) <= effort:
             continue
-        load = _load(subject, joint) if _holds(joint) else 0.0
+        load = _load(subject, joint) if _is_held_at_0(joint) else 0.0
         if load > effort * SPARE:
             unit = "N" if joint.type == "prismatic" else "Nm"
             message = f"joint {joint.name!r} holds {load:.3g} {unit} at 0, its effort is {effort:g}"
             yield Problem(limit, message, "effort", f"{load:.3g} {unit} would hold it")
 
 
-def _most(subject: Subject, joint: Joint) -> float:
+def _most_load(subject: Subject, joint: Joint) -> float:
     """Return an upper bound of gravity at a joint with any axis: quick, and enough for most."""
     pose = link_poses(subject).get(joint.child)
     weight = carried(subject).get(joint.child, NO_WEIGHT)
@@ -186,7 +181,7 @@ def _most(subject: Subject, joint: Joint) -> float:
     return GRAVITY * weight.mass * arm
 
 
-def _holds(joint: Joint) -> bool:
+def _is_held_at_0(joint: Joint) -> bool:
     """Return whether a motor holds this joint at 0."""
     if joint.type not in DRIVEN or "mimic" in joint.parts or joint.type == "continuous":
         return joint.type == "continuous" and "mimic" not in joint.parts
@@ -250,7 +245,7 @@ def carried(subject: Subject) -> Mapping[str, Weight]:
     for name in reversed([*poses]):  # children come after their parents
         for joint in subject.robot.above.get(name, ())[:1]:
             if joint.parent in found:
-                found[joint.parent] = _together(found[joint.parent], found[name])
+                found[joint.parent] = _sum(found[joint.parent], found[name])
     return found
 
 
@@ -267,7 +262,7 @@ def _without_gravity(subject: Subject) -> set[str]:
     }
 
 
-def _together(one: Weight, other: Weight) -> Weight:
+def _sum(one: Weight, other: Weight) -> Weight:
     """Return two weights as one."""
     if not one.mass or not other.mass:
         return one if one.mass else other

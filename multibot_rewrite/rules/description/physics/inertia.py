@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mass of links, with and without what is fixed to them, and their inertia: missing,
-impossible, or in the wrong unit.
-"""
+"""The mass of links, with what is fixed to them, and their inertia: missing, impossible, odd unit."""
 
 from __future__ import annotations
 
@@ -109,10 +107,10 @@ def impossible_inertia(subject: Subject) -> Iterator[Problem]:
         level = WARNING if merged or may_be_classics(root, release) else ""
         yield Problem(part_of(inertial, "inertia"), message, level=level)
     if root.tag == "sdf":
-        yield from _of_models(subject)
+        yield from _model_faults(subject)
 
 
-def _of_models(subject: Subject) -> Iterator[Problem]:
+def _model_faults(subject: Subject) -> Iterator[Problem]:
     """Yield the faults of masses and inertias in an SDF, whose links are not merged."""
     classics = may_be_classics(subject.document.root, subject.settings.distro)
     for link in subject.elements.every("link"):
@@ -157,7 +155,7 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         mass, moments = inertial.mass, inertial.moments
         if mass is None or moments is None or mass < LIGHT:
             continue
-        size = _size(link.element) if mass >= MASSIVE else 0.0
+        size = _reach(link.element) if mass >= MASSIVE else 0.0
         if size > SMALL_SHAPE and mass > DENSEST * size**3 * 4 / 3 * pi:
             message = f"mass of link {link.name!r}: no metal weighs {mass:g} kg within {size:.3g} m"
             yield Problem(part_of(inertial, "mass"), message, None, "is it in kilograms?")
@@ -167,7 +165,7 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
             continue
         radius, level, shapes = sqrt(largest / mass), "", ""
         if SHORT <= radius <= LONG:
-            size = size or _size(link.element)
+            size = size or _reach(link.element)
             if size <= SMALL_SHAPE or SMALLER <= radius / size <= LARGER:
                 continue
             shapes = f", its shapes reach {size:.3g} m from the origin"
@@ -179,7 +177,7 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         yield Problem(place, message, None, "is the unit right?", level=level)
 
 
-def _size(link: _Element) -> float:
+def _reach(link: _Element) -> float:
     """Return how far a link's shapes reach from its origin; 0 if it has a mesh of unknown size."""
     far = 0.0
     for geometry in link.iter("geometry"):
@@ -243,8 +241,7 @@ TINY_MASS = 1e-6
 
 @rule("MB603", "link-without-mass", WARNING)
 def link_without_mass(subject: Subject) -> Iterator[Problem]:
-    """Yield the uppermost bodies without mass, if the robot has several bodies and some mass. Of a
-    robot in Gazebo it is an error, where something in use is lost with them."""
+    """Yield the uppermost bodies without mass; errors in Gazebo, if something in use is lost."""
     robot = subject.robot
     mass = _masses(robot)
     if len(mass) < 2 or not any(it > 0 for it in mass.values()):

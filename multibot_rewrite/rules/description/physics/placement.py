@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shapes of visuals and collisions, the scales of their meshes, and where they and the centre of
-mass are.
-"""
+"""Shapes, the scales of their meshes, where they are, and where the centre of mass is."""
 
 from __future__ import annotations
 
@@ -120,12 +118,12 @@ def collision_away(subject: Subject) -> Iterator[Problem]:
     """Report links with shapes of known size, and links with one mesh for both."""
     for link in subject.robot.links:
         seen, hard = _shapes(subject)[link.element]
-        if not seen or not hard or _alike(subject, seen[0], hard[0]):
+        if not seen or not hard or _is_written_alike(subject, seen[0], hard[0]):
             continue
-        box = _around(subject, seen)
-        gap = 0.0 if box is None else _gap(box, _around(subject, hard))
+        box = _box_around(subject, seen)
+        gap = 0.0 if box is None else _gap(box, _box_around(subject, hard))
         gap = 0.0 if gap and _covers_next(subject, link, hard) else gap
-        gap = gap or _moved(subject, seen, hard)
+        gap = gap or _distance_moved(subject, seen, hard)
         if gap:
             message = f"the collision of link {link.name!r} is {gap:.3g} m away from its visual"
             yield Problem(hard[0][0], message)
@@ -145,7 +143,7 @@ def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
     return found
 
 
-def _alike(
+def _is_written_alike(
     subject: Subject, one: tuple[_Element, _Element], other: tuple[_Element, _Element]
 ) -> bool:
     """Return whether two shapes are written alike, at one place. Most are, and need no computation."""
@@ -157,15 +155,15 @@ def _alike(
     return written[0] == written[1]
 
 
-def _pose(subject: Subject, element: _Element) -> Pose | None:
+def _pose_of(subject: Subject, element: _Element) -> Pose | None:
     return pose_in(subject.elements.first("origin").get(element))
 
 
-def _around(subject: Subject, shapes: _Shapes) -> Extent | None:
+def _box_around(subject: Subject, shapes: _Shapes) -> Extent | None:
     """Return the box around some shapes; None if one of them has no known size."""
     found = []
     for element, shape in shapes:
-        own = _pose(subject, element)
+        own = _pose_of(subject, element)
         extent = None if own is None else _extent(subject, shape, own)
         if extent is None:
             return None
@@ -174,6 +172,7 @@ def _around(subject: Subject, shapes: _Shapes) -> Extent | None:
 
 
 def _extent(subject: Subject, shape: _Element, pose: Pose) -> Extent | None:
+    """Return the box around a shape or mesh; None for one of unknown size."""
     if shape.tag != "mesh":
         return extent_of(shape, pose)
     box = box_of(subject, shape)
@@ -197,25 +196,24 @@ def _apart(one: Extent, other: Extent) -> float:
 
 
 def _covers_next(subject: Subject, link: Link, hard: _Shapes) -> bool:
-    """Return whether the collision is where a link below is seen. A cylinder of a leg's hip is
-    around the motor that the thigh shows."""
-    own = _around(subject, hard)
+    """Return whether the collision is where a link below is seen, such as a motor in a leg's hip."""
+    own = _box_around(subject, hard)
     for joint in subject.robot.below.get(link.name, ()):
-        child, pose = subject.robot.link.get(joint.child), _pose(subject, joint.element)
-        box = _around(subject, _shapes(subject)[child.element][0]) if child else None
+        child, pose = subject.robot.link.get(joint.child), _pose_of(subject, joint.element)
+        box = _box_around(subject, _shapes(subject)[child.element][0]) if child else None
         if box and own and pose and _apart(placed_box(box, pose), own) <= 0:
             return True
     return False
 
 
-def _moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
+def _distance_moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
     """Return how far the one collision is from the one visual of the same mesh."""
     if len(seen) != 1 or len(hard) != 1:
         return 0.0
     (one, visual), (other, collision) = seen[0], hard[0]
     if visual.tag != "mesh" or visual.items() != collision.items():
         return 0.0
-    here, there = _pose(subject, one), _pose(subject, other)
+    here, there = _pose_of(subject, one), _pose_of(subject, other)
     # Of a mesh that is turned as well it is unknown where it ends up.
     if here is None or there is None or not is_same(here.matrix, there.matrix):
         return 0.0
@@ -243,13 +241,13 @@ def _outside(subject: Subject, link: Link, centre: Vector) -> float:
     seen, hard = _shapes(subject)[link.element]
     shapes = seen + hard
     # A mesh may show less than what weighs: the shafts of an arm's wrist are within the link before.
-    box = None if any(it.tag == "mesh" for _, it in shapes) else _around(subject, shapes)
+    box = None if any(it.tag == "mesh" for _, it in shapes) else _box_around(subject, shapes)
     if box is None:
         # How far it is from all that is known of the link: its joints and the places of its shapes.
         if length(centre) < FAR_OF_MESH:
             return 0.0
         below = [it.element for it in subject.robot.below.get(link.name, ())]
-        places = [_pose(subject, it) for it in (*below, *(element for element, _ in shapes))]
+        places = [_pose_of(subject, it) for it in (*below, *(element for element, _ in shapes))]
         known = [(0.0, 0.0, 0.0), *(it.at for it in places if it is not None)]
         way = min((length(minus(centre, it)) for it in known), default=inf)
         return way if way > FAR_OF_MESH else 0.0

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ros2_control: joints that it and transmissions drive, or should; its interfaces: twice, misspelt,
-without a state; what loads it in a simulator, whose hardware it is, and who else drives its joints.
-"""
+"""ros2_control: driven joints, interfaces, what loads it in a simulator, and rival drivers."""
 
 from __future__ import annotations
 
@@ -231,9 +229,10 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB242", "nothing-to-control", ERROR)
 def nothing_to_control(subject: Subject) -> Iterator[Problem]:
-    """Report plugins of the two simulators in a whole description without a system:
-    component_parser.cpp throws, gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp catch
-    it."""
+    """Report plugins of the two simulators in a whole description without a system.
+
+    Source: component_parser.cpp throws; gz_ros2_control_plugin.cpp, gazebo_ros2_control_plugin.cpp
+    catch it."""
     if not subject.robot.links or subject.elements.every("ros2_control"):
         return
     for plugin in manager_plugins(subject):
@@ -257,8 +256,7 @@ def hardware_of_other_simulator(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB236", "joint-with-two-drivers", WARNING)
 def joint_with_two_drivers(subject: Subject) -> Iterator[Problem]:
-    """Report, once a joint, joints that plugins drive together with command interfaces or each
-    other. A command interface holds its joint while no controller claims it (``hold_joints``)."""
+    """Report, once a joint, joints that two plugins command, or a plugin and a command interface."""
     rivals = {
         (name_of(joint), simulator.name): "<ros2_control>"
         for system, _, simulator in simulated(subject)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that belong to a description: the interfaces that controllers claim in that of their
-parameters, and the joints of a model of MuJoCo.
-"""
+"""The interfaces that controllers claim in a description's files, and the joints of MuJoCo models."""
 
 from __future__ import annotations
 
@@ -36,6 +34,7 @@ _YAML = (".yaml", ".yml")
 
 
 def _not_exported(subject: Subject) -> Iterator[Problem]:
+    """Yield a problem for each interface that controllers claim and the description does not export."""
     for element, known in _claimed(subject):
         # Few descriptions need them.
         from multibot_rewrite.rules.system.states import missing_message
@@ -43,7 +42,12 @@ def _not_exported(subject: Subject) -> Iterator[Problem]:
         for it in missing_in(subject, known):
             # Lines of an expanded xacro are in no file.
             message, hint = missing_message(it, None if subject.origins else "line {0.line}".format)
-            yield Problem(element, f"{_line(it.claims[0])}: {message}", _place(element), hint)
+            yield Problem(
+                element,
+                f"{_place_of(it.claims[0])}: {message}",
+                _place_in(element),
+                hint,
+            )
 
 
 def missing_in(subject: Subject, known: tuple[Interface, ...]) -> Iterator[Missing]:
@@ -59,16 +63,18 @@ def missing_in(subject: Subject, known: tuple[Interface, ...]) -> Iterator[Missi
 
 
 def _claimed_twice(subject: Subject) -> Iterator[Problem]:
+    """Yield a problem for each interface that a controller claims by two parameters."""
     for element, known in _claimed(subject):
         from multibot_rewrite.rules.system.states import claimed_twice
 
         for other, twice in claimed_twice(known):
-            message = f"{_line(twice)}: {twice.node} claims {twice.name} by two parameters"
-            hint = f"name another joint there, or in {_line(other)}"
-            yield Problem(element, message, _place(element), hint)
+            message = f"{_place_of(twice)}: {twice.node} claims {twice.name} by two parameters"
+            hint = f"name another joint there, or in {_place_of(other)}"
+            yield Problem(element, message, _place_in(element), hint)
 
 
-def _place(element: _Element) -> str | None:
+def _place_in(element: _Element) -> str | None:
+    """Return where in an element a file is named: its text, or nowhere."""
     return "" if element.tag == "parameters" else None
 
 
@@ -83,7 +89,11 @@ interface_claimed_twice = declaration.CLAIMED_TWICE._replace(
 def _of_no_node(subject: Subject) -> Iterator[Problem]:
     """Yield a problem for a section that names another node than the manager of its plugin."""
     systems = subject.elements.tops("ros2_control")
-    files = [it for it in (_files(subject, systems[0]) if systems else ()) if _place(it[0]) == ""]
+    files = [
+        it
+        for it in (_controller_files(subject, systems[0]) if systems else ())
+        if _place_in(it[0]) == ""
+    ]
     if not files:
         return
     from multibot_rewrite.related_files.params.sections import meant_for, raw_sections
@@ -113,8 +123,7 @@ _BODIES = ("body", "frame", "replicate")
 
 @rule("MB245", "mujoco-joint-without-name", ERROR)
 def mujoco_joint_without_name(subject: Subject) -> Iterator[Problem]:
-    """Report joints of the model that the hardware names, and of its includes; joints of a
-    <default> and the like do not count."""
+    """Report joints without a name in the MuJoCo model that the hardware names, and its includes."""
     for system in subject.elements.tops("ros2_control"):
         param = system.find("hardware/param[@name='mujoco_model']")
         if param is None or text_at(system, "hardware/plugin") != _MUJOCO:
@@ -146,14 +155,13 @@ def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
 def _claimed(subject: Subject) -> list[tuple[_Element, tuple[Interface, ...]]]:
     """Return each controller file's exported and claimed interfaces, with the naming element."""
     systems = subject.elements.tops("ros2_control")
-    files = _files(subject, systems[0]) if systems else ()
+    files = _controller_files(subject, systems[0]) if systems else ()
     found = ((element, _interfaces(subject, path, is_sure)) for element, path, is_sure in files)
     return [it for it in found if it[1]]
 
 
 def _chosen(subject: Subject) -> tuple[str, ...]:
-    """Return the beginnings of interface names that an argument of xacro chooses: controllers that
-    claim another one are for another choice."""
+    """Return the beginnings of interface names that an argument of xacro chooses."""
     if not subject.origins:
         return ()
     interfaces = {
@@ -168,12 +176,12 @@ def _chosen(subject: Subject) -> tuple[str, ...]:
     )
 
 
-def _line(it: Interface) -> str:
+def _place_of(it: Interface) -> str:
     """Return where it is written: ``file.xacro:12``."""
     return f"{os.path.basename(it.place.file)}:{it.place.line}"
 
 
-def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
+def _controller_files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
     """Yield each file of controllers, where it is named, and whether it is surely this robot's."""
     named = [
         element

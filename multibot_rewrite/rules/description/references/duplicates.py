@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that are declared twice, and <gazebo> blocks that contradict each other, or whose reference
-has two meanings.
-"""
+"""Names that are declared twice, and <gazebo> blocks that contradict each other or are ambiguous."""
 
 from __future__ import annotations
 
@@ -25,7 +23,7 @@ from multibot_rewrite.rules.subject import Subject, name_of
 
 @rule("MB201", "duplicate-name", ERROR)
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
-    """Report every one except the first."""
+    """Report names of one kind, every one except the first."""
     yield from declared_twice(subject)
     for mild in (repeated_joint, duplicate_transmission, system_twice):
         yield from (it._replace(level=WARNING) for it in mild(subject))
@@ -36,7 +34,7 @@ def duplicate_name(subject: Subject) -> Iterator[Problem]:
 def declared_twice(subject: Subject) -> Iterator[Problem]:
     """Report links and joints; one finding for all that one macro call repeats."""
     pairs = repeated(subject.inventory)
-    calls = lists_by_key((_cause(subject, *pair) or pair[0], pair) for pair in pairs)
+    calls = lists_by_key((_repeated_by(subject, *pair) or pair[0], pair) for pair in pairs)
     for (claim, first), *more in calls.values():
         text = f"{claim.site.kinds[0]} {claim.value!r} is declared twice"
         are = "are" if len(more) > 1 else "is"
@@ -48,7 +46,7 @@ def declared_twice(subject: Subject) -> Iterator[Problem]:
         yield Problem(claim.element, message, claim.attribute, hint)
 
 
-def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
+def _repeated_by(subject: Subject, claim: Claim, first: Claim) -> object:
     """Return why xacro wrote an element twice: the macro call, or the file included again."""
     if not subject.origins:
         return None
@@ -71,7 +69,7 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
 
 
 def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
-    """Report every name that another element has."""
+    """Report every hardware component whose name another one has."""
     systems = subject.elements.tops("ros2_control")
     for it in _repeated((name_of(system), system) for system in systems if name_of(system)):
         message = f"there is another <ros2_control> {name_of(it)!r}"
@@ -166,17 +164,17 @@ _SINGLE = (
 )
 
 
-def _camel(tag: str) -> str:
+def _camel_case(tag: str) -> str:
     first, *others = tag.split("_")
     return first + "".join(map(str.capitalize, others))
 
 
-SINGLE = {form: it for it in _SINGLE for form in (it, _camel(it))}
+SINGLE = {form: it for it in _SINGLE for form in (it, _camel_case(it))}
 
 
 @rule("MB203", "link-and-joint", WARNING)
 def link_and_joint(subject: Subject) -> Iterator[Problem]:
-    """Report every such reference."""
+    """Report every reference that is a link and a joint."""
     yield from ambiguous(subject.inventory)
 
 
@@ -197,8 +195,7 @@ def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
 
 
 def sensors_elsewhere(subject: Subject) -> Iterator[Problem]:
-    """Report sensors of Gazebo in a link of a URDF, which sdformat's converter passes over; those
-    of other readers name their parent, and have their rate in an attribute."""
+    """Report sensors of Gazebo in a link of a URDF, which sdformat's converter passes over."""
     for it in subject.elements.every("sensor"):
         above = it.getparent()
         link = None if above is None else subject.robot.link.get(above.get("name", ""))

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Links, joints, frames and other names that are used and not declared, and frames that the joints
-of a description place and a plugin as well.
-"""
+"""Names that are used and not declared, and frames that both joints and a plugin place."""
 
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -45,22 +43,19 @@ class References(NamedTuple):
 
 @memoized
 def references(subject: Subject) -> References:
-    """Return the undeclared references of a document, for all rules of this group. In a part of a
-    description a name may be declared elsewhere; in what xacro has not expanded it may not be made
-    yet."""
+    """Return the undeclared references of a document, for all rules; none of a xacro source."""
     inventory = subject.inventory
     claims = doubtful(inventory)
     if uses_xacro(inventory.document):
         return References(claims, lists_by_key(()))
     ends = loose_ends(claims, inventory.declared, subject.settings.naming.shared_frames)
-    loose = [it for it in ends if not _elsewhere(it, inventory)]
+    loose = [it for it in ends if not _is_declared_elsewhere(it, inventory)]
     found = undeclared_names(loose, inventory.declared)
     return References(claims, lists_by_key((it.code, it) for it in found))
 
 
-def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
-    """Return whether it is declared after all: in another file, with the robot's name as its scope
-    (as in Gazebo Classic), or in the PROTO of a Webots robot."""
+def _is_declared_elsewhere(loose: Loose, inventory: Inventory) -> bool:
+    """Return whether a name is declared in another file, in the robot's scope, or in a PROTO."""
     claim, part = loose
     root = inventory.document.root
     is_part = not inventory.declared["link"] or (root.tag == "robot" and "name" not in root.attrib)
@@ -119,7 +114,7 @@ AS_WRITTEN = make_naming("tf-per-robot")
 @rule("MB230", "frame-of-joint-and-plugin", WARNING)
 def frame_with_two_parents(subject: Subject) -> Iterator[Problem]:
     """Report plugins that send odometry to a link below the root."""
-    for plugin, parent, child in _sent(subject):
+    for plugin, parent, child in _odometry_sent(subject):
         sends = f"sends {parent} -> {child}"
         if parent == child:
             hint = "name the odometry frame and the robot's root link"
@@ -131,7 +126,7 @@ def frame_with_two_parents(subject: Subject) -> Iterator[Problem]:
             yield Problem(plugin, message, None, hint + line)
 
 
-def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
+def _odometry_sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
     """Yield each plugin with the transform of odometry that it sends."""
     root, served = subject.document.root, subject.inventory.served
     for host, section in served:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Links, joints, groups and virtual joints of an SRDF that its URDF, or the SRDF, does not have; pairs
-of links that are not checked for collision; planning groups and their named states."""
+"""Names of an SRDF that its URDF, or the SRDF, does not have; collision pairs; groups and states."""
 
 from __future__ import annotations
 
@@ -48,8 +47,10 @@ def of_moveit(
 
 
 def level_of(subject: Subject) -> str:
-    """Return the level of a name that the URDF lacks, if it is no error: Pinocchio leaves a joint
-    of a state out and reads no group; a URDF that was found may be another variant of the robot."""
+    """Return the level of a name that the URDF lacks, a warning where that may be no error.
+
+    Pinocchio leaves a joint of a state out and reads no group; a URDF that was found may be another
+    variant of the robot."""
     is_named = subject.settings.urdf and not is_pinocchios(subject.document.root)
     return "" if is_named else WARNING
 
@@ -100,7 +101,7 @@ srdf_group = srdf_rule("MB805", "srdf-group", ERROR)(undeclared_for_moveit("MB80
 
 @srdf_rule("MB806", "srdf-duplicate", ERROR)
 def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
-    """Report every declaration but the first."""
+    """Report every declaration of a name but the first."""
     for claim, _ in repeated(subject.inventory):
         message = f"there is another {claim.element.tag} {claim.value.strip()!r}"
         yield Problem(claim.element, message, claim.attribute, "rename one")
@@ -122,17 +123,17 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB807", "stale-pair", WARNING)
 def stale_pair(subject: Subject) -> Iterator[Problem]:
-    """Report each name once, at its first pair."""
+    """Report names in pairs that the URDF lacks, each once, at its first pair."""
     found = list(undeclared("MB807", subject))
-    names = Counter(_link(it) for it in found)
+    names = Counter(_link_of(it) for it in found)
     for it in found:
-        more = names.pop(_link(it), 0) - 1
+        more = names.pop(_link_of(it), 0) - 1
         if more >= 0:
             also = f"; {more} more pairs name it" if more else ""
             yield it._replace(message=it.message + also)
 
 
-def _link(problem: Problem) -> str:
+def _link_of(problem: Problem) -> str:
     return text_of(problem.element, problem.attribute or "")
 
 
@@ -154,7 +155,7 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB818", "self-pair", WARNING)
 def self_pair(subject: Subject) -> Iterator[Problem]:
-    """Report pairs to disable or to enable."""
+    """Report pairs of a link with itself, to disable or to enable."""
     for it in subject.document.root.iterchildren("disable_collisions", "enable_collisions"):
         one = text_of(it, "link1")
         if one and one == text_of(it, "link2"):
@@ -163,7 +164,7 @@ def self_pair(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB819", "pair-without-shape", NOTE)
 def pair_without_shape(subject: Subject) -> Iterator[Problem]:
-    """Report each link once, at its first pair."""
+    """Report links in pairs that have no collision, each once, at its first pair."""
     robot = subject.beside
     reported = set()
     for it in subject.document.root.iterchildren("disable_collisions") if robot else ():
@@ -187,7 +188,9 @@ def adjacent_links(subject: Subject) -> Iterator[Problem]:
     apart = {frozenset((text_of(it, "link1"), text_of(it, "link2"))) for it in pairs}
     alone = {text_of(it, "link") for it in root.iterchildren("disable_default_collisions")}
     left = [
-        it for it in robot.joints if _both_checked(it, robot, alone) and _links(it) not in apart
+        it
+        for it in robot.joints
+        if _both_checked(it, robot, alone) and _both_links(it) not in apart
     ]
     if left:
         names = ", ".join(f"{it.parent}-{it.child}" for it in left[:SHOWN])
@@ -200,13 +203,13 @@ def _has_shape(robot: Robot, link: str) -> bool:
     return robot.link[link].element.find("collision") is not None
 
 
-def _links(joint: Joint) -> frozenset[str]:
+def _both_links(joint: Joint) -> frozenset[str]:
     return frozenset((joint.parent, joint.child))
 
 
 def _both_checked(joint: Joint, robot: Robot, alone: set[str]) -> bool:
     """Return whether both links of a joint are checked against each other."""
-    ends = _links(joint)
+    ends = _both_links(joint)
     return len(ends) == 2 and all(
         it in robot.link and it not in alone and _has_shape(robot, it) for it in ends
     )
@@ -238,7 +241,7 @@ def state_of_another_group(subject: Subject) -> Iterator[Problem]:
         return
     groups = groups_of(subject.document.root)
     joints: dict[str, frozenset[str]] = {}
-    for it, group, joint in _states(subject.document.root):
+    for it, group, joint in _state_joints(subject.document.root):
         if not is_whole(group, groups) or joint not in robot.joint:
             continue
         if group not in joints:
@@ -251,7 +254,7 @@ def state_of_another_group(subject: Subject) -> Iterator[Problem]:
 def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     """Report joints of one value that have limits."""
     robot = subject.beside
-    for it, _, name in _states(subject.document.root) if robot else ():
+    for it, _, name in _state_joints(subject.document.root) if robot else ():
         assert robot is not None
         joint, values = robot.joint.get(name), numbers_in(it.get("value", ""))
         limits = _limits(joint) if joint and joint.type in ("revolute", "prismatic") else None
@@ -263,7 +266,7 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "value", "correct the value")
 
 
-def _states(root: _Element) -> Iterator[tuple[_Element, str, str]]:
+def _state_joints(root: _Element) -> Iterator[tuple[_Element, str, str]]:
     """Yield the joints of named states, with the group and the joint's name."""
     for state in root.iterchildren("group_state"):
         for it in state.iterchildren("joint"):
@@ -284,7 +287,7 @@ def _limits(joint: Joint) -> tuple[float, float] | None:
 
 @srdf_rule("MB810", "broken-chain", ERROR)
 def broken_chain(subject: Subject) -> Iterator[Problem]:
-    """Report chains whose links exist."""
+    """Report chains whose links exist and are not in one line."""
     robot = subject.beside
     for it in subject.document.root.iterfind("group/chain") if robot else ():
         base, tip = text_of(it, "base_link"), text_of(it, "tip_link")
@@ -307,7 +310,7 @@ def empty_group(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB816", "end-effector-parent", WARNING)
 def end_effector_parent(subject: Subject) -> Iterator[Problem]:
-    """End effectors that name their parent group."""
+    """Report end effectors that name their parent group."""
     robot, groups = subject.beside, groups_of(subject.document.root)
     for it in subject.document.root.iterchildren("end_effector"):
         parent, link = text_of(it, "parent_group"), text_of(it, "parent_link")

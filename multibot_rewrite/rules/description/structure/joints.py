@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Types, axes and origins of joints, and their limits: missing, inverted, empty, in the wrong unit;
-soft limits, and dynamics.
-"""
+"""Types, axes and origins of joints, their limits, soft limits and dynamics."""
 
 from __future__ import annotations
 
@@ -34,7 +32,7 @@ FAR = 50.0
 @rule("MB519", "zero-axis", ERROR)
 def zero_axis(subject: Subject) -> Iterator[Problem]:
     """Report axes of length 0."""
-    for joint, axis, length in _axes(subject):
+    for joint, axis, length in _axes_with_length(subject):
         if length == 0:
             fault = "is 0 0 0" if axis.get("xyz") else "has no xyz, which is 0 0 0"
             yield Problem(axis, f"<axis> of {joint.type} joint {joint.name!r} {fault}", "xyz")
@@ -43,7 +41,7 @@ def zero_axis(subject: Subject) -> Iterator[Problem]:
 @rule("MB520", "axis-length", WARNING)
 def axis_length(subject: Subject) -> Iterator[Problem]:
     """Report axes whose length is neither 0 nor 1."""
-    for joint, axis, length in _axes(subject):
+    for joint, axis, length in _axes_with_length(subject):
         if length and abs(length - 1) > TOLERANCE:
             message = f"axis of joint {joint.name!r} has the length {length:.4g}"
             level = "" if joint.type == "prismatic" else NOTE
@@ -51,7 +49,7 @@ def axis_length(subject: Subject) -> Iterator[Problem]:
 
 
 @memoized
-def _axes(subject: Subject) -> list[tuple[Joint, _Element, float]]:
+def _axes_with_length(subject: Subject) -> list[tuple[Joint, _Element, float]]:
     """Return the joints that use an <axis>, with it and its length; without xyz that is 0."""
     found = []
     for joint, axis in joints_with(subject.robot, "axis"):
@@ -64,7 +62,7 @@ def _axes(subject: Subject) -> list[tuple[Joint, _Element, float]]:
 
 @rule("MB522", "fixed-joint-ignores", NOTE)
 def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
-    """Report once per joint; exporters write <axis> and <dynamics> everywhere."""
+    """Report what a fixed joint ignores, once a joint; exporters write <axis> everywhere."""
     for joint in subject.robot.joints:
         if joint.type != "fixed":
             continue
@@ -149,7 +147,7 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB515", "zero-limit", NOTE)
 def zero_limit(subject: Subject) -> Iterator[Problem]:
-    """Report once per joint; one that mimics another or cannot move needs no effort."""
+    """Report limits of 0, once a joint; one that mimics or cannot move needs no effort."""
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type not in ONE_AXIS or "mimic" in joint.parts:
             continue
@@ -176,8 +174,7 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB517", "prismatic-units", WARNING)
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
-    """Report long ranges; an equal one to both sides is mostly a virtual joint without real limits,
-    and a joint that moves nothing represents something else: a pressure, a dial."""
+    """Report long ranges of prismatic joints that move something, unless equal to both sides."""
     for joint, limit, lower, upper in _bounds(subject):
         far = max(abs(lower), abs(upper))
         is_long = joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper
@@ -217,11 +214,13 @@ def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
 
 
 def _angle_in_degrees(rpy: str) -> float | None:
+    """Return the first rotation by a round number of more than a turn; None without one."""
     found = numbers(rpy) or ()
     return next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
 
 
 def _is_degrees(angle: float) -> bool:
+    """Return whether a limit is a round number of many turns."""
     size = abs(angle)
     return DEGREES[0] < size <= DEGREES[1] and size % 0.5 == 0 and size not in ENDLESS
 

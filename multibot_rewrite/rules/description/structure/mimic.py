@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Joints that mimic others, and positions against limits: those that joints follow, those they
-start at.
-"""
+"""Joints that mimic others, and positions against limits: followed ones, and those to start at."""
 
 from __future__ import annotations
 
@@ -138,7 +136,7 @@ def _is_outside(value: float, bounds: Bounds) -> bool:
 @rule("MB537", "start-beyond-limits", WARNING)
 def start_beyond_limits(subject: Subject) -> Iterator[Problem]:
     """Report values that are numbers, of joints with a range."""
-    for element, name in _starts(subject):
+    for element, name in _start_values(subject):
         joint, value = subject.robot.joint.get(name), number(text_of(element))
         bounds = None if joint is None else _bounds(joint)
         if value is None or bounds is None or bounds[0] - 1e-3 <= value <= bounds[1] + 1e-3:
@@ -148,7 +146,7 @@ def start_beyond_limits(subject: Subject) -> Iterator[Problem]:
         yield Problem(element, message, "")
 
 
-def _starts(subject: Subject) -> Iterator[tuple[_Element, str]]:
+def _start_values(subject: Subject) -> Iterator[tuple[_Element, str]]:
     """Yield each value that a joint starts at, and the joint."""
     for system in subject.elements.tops("ros2_control"):
         for joint in system.iterchildren("joint"):
@@ -190,9 +188,10 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
 
 
 def _level(subject: Subject, param: _Element, text: str) -> str:
-    """Return the level: Humble keeps min and max and reads neither (component_parser.cpp:261),
-    later releases go on without them (``retrieve_min_max_interface_values``); an empty value is
-    none."""
+    """Return the level of a value of <ros2_control> that is no number.
+
+    Humble keeps min and max and reads neither (component_parser.cpp:261), later releases go on
+    without them (``retrieve_min_max_interface_values``); an empty value is none."""
     if param.get("name") == "initial_value":
         return "" if text else WARNING
     return NOTE if since_jazzy(subject) else WARNING
@@ -238,6 +237,7 @@ def _inverted_bounds(interface: _Element) -> Iterator[Problem]:
 
 
 def _beyond_limits(joint: Joint, interface: _Element, low: float, high: float) -> Iterator[Problem]:
+    """Yield a problem for each bound of an interface outside of the joint's own limits."""
     for param in interface.iterchildren("param"):
         value = number(text_of(param))
         if value is None or param.get("name") not in ("min", "max"):
@@ -250,6 +250,7 @@ def _beyond_limits(joint: Joint, interface: _Element, low: float, high: float) -
 
 
 def _bounds_of(joint: Joint, interface: str) -> tuple[float, float] | None:
+    """Return the joint's own limits for an interface; None without any."""
     limit = joint.parts.get("limit")
     if limit is None:
         return None

@@ -56,16 +56,16 @@ def announcing(folders: Iterable[str]) -> list[str]:
     paths = [
         os.path.join(folder, name)
         for folder in folders
-        for name in _names(folder or ".")
+        for name in _sorted_names(folder or ".")
         if name.endswith(_METADATA) and not name.startswith("~")  # pip's half-removed ones
     ]
-    named = {path for path in paths if GROUP.encode() in _entry_points(path)}
+    named = {path for path in paths if GROUP.encode() in _entry_points_bytes(path)}
     # Usually none does: then the order of the folders does not matter.
     first = {_key(os.path.basename(path)): path for path in reversed(paths)} if named else {}
     return [path for path in first.values() if path in named]
 
 
-def _names(folder: str) -> list[str]:
+def _sorted_names(folder: str) -> list[str]:
     try:
         return sorted(os.listdir(folder))
     except OSError:  # a zip file, or nothing: sys.path may name anything
@@ -80,7 +80,7 @@ def _key(name: str) -> str:
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
-def _entry_points(folder: str) -> bytes:
+def _entry_points_bytes(folder: str) -> bytes:
     path = f"{folder}/entry_points.txt"
     if not os.access(path, os.R_OK):
         return b""  # as most packages, of which there may be hundreds: an error would take longer
