@@ -33,7 +33,8 @@ def with_missing_options(
 ) -> RewriteRefused:
     """Return the error with the options as its hint with which ``undo`` of the ``data`` succeeds.
 
-    Links without the robot's name may be shared, if others have it. What ``undo`` gives is verified: rewritten with these options it is the file again.
+    Links without the robot's name may be shared, if others have it. What ``undo`` gives is
+    verified: rewritten with these options it is the file again.
     """
     links = [it.decode("utf-8", "replace") for it in _LINK.findall(data)]
     bare = [it for it in links if robot not in it]

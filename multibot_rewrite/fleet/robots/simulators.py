@@ -131,7 +131,7 @@ def without_mass(robot: RewrittenRobot) -> Iterator[Finding]:
 
 
 def lookups_of_model(robot: RewrittenRobot) -> Iterator[Claim]:
-    """Yield the values that use the robot's own model, but for topics that plugins are given in full."""
+    """Yield the values that use the robot's own model, but for topics given in full."""
     inventory = robot.member.inventory
     if found := [*values_with_own_model(inventory)]:
         bridged, _ = bridged_topics({"": inventory}, robot.topics.naming)
