@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.knowledge.records import MANAGER
-from multibot_rewrite.planning.ways import HOST, SPAWNER
 from multibot_rewrite.producers.launch.launched import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
@@ -34,7 +33,17 @@ from multibot_rewrite.rules.with_plan import subject_of
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.parameters import LIST_CONTROLLERS
-from multibot_rewrite.system.records import RUNS, SERVES, Environment, Place, System, doubts, surely
+from multibot_rewrite.system.records import (
+    HOST,
+    RUNS,
+    SERVES,
+    SPAWNER,
+    Environment,
+    Place,
+    System,
+    doubts,
+    surely,
+)
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
 # no parameter file names. Between robots they are the build's.

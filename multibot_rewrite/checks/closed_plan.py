@@ -225,7 +225,8 @@ def closed_plan(plan: FleetPlan) -> Fleet:
 
 
 def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
-    """Return what the bridges of these files carry, but those of robots that may be real."""
+    """Return what these bridges carry, but those of robots that may be real."""
+    # The shared one is left out if all robots may be real.
     maybe = plan.fleet.maybe_real
     real = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}
     left = {f"{it}/{BRIDGE_FILE}" for it in real}

@@ -37,7 +37,9 @@ def one_for_a_cause(
     rules: Mapping[str, Rule],
     in_doubt: bool,
 ) -> list[Finding]:
-    """Return the findings of system and plan, one a cause; ``in_doubt``: there may be more."""
+    """Return the findings of a system and its plan, one for each cause.
+
+    ``in_doubt``: the system may have more than was seen."""
     left = [it for it in found if not _is_meant(plan, seen, it, rules[it.code])]
     # What is there counts before what is missing, then the first.
     places: list[dict[_About, int]] = [{}, {}]

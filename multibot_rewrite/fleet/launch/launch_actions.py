@@ -33,7 +33,6 @@ from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.conditions import UNSENT, readable
-from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
@@ -44,7 +43,7 @@ from multibot_rewrite.knowledge.programs import (
     program_of,
     started_as,
 )
-from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts, names_its_process
 from multibot_rewrite.planning.domain_bridge import bridge_name, bridge_path
 from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.planning.start import (
@@ -56,7 +55,7 @@ from multibot_rewrite.planning.start import (
     spawner_of,
     start_of,
 )
-from multibot_rewrite.planning.ways import COMPONENT, SPAWNER, Started
+from multibot_rewrite.planning.ways import Started
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.producers.launch.bridges import services_in
@@ -69,12 +68,10 @@ from multibot_rewrite.producers.launch.handed_on import (
 )
 from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import COMPONENT, PUBLISHES, SPAWNER, TOPIC
 from multibot_rewrite.system.words import START_POSE, last_word
 
 STATE = "robot_state_publisher"
-# Their words name files of the robot.
-_WORDS_OF_BUILD = (STATE, CARTOGRAPHER)
 # What launch files themselves set, by robot and node.
 Values: TypeAlias = Mapping[tuple[str, str], Mapping[str, Any]]
 # Started by hand, or once for all robots.
@@ -242,7 +239,10 @@ def _start_of(given: _Given, name: str) -> Start:
     lua = given.robot.spec.related_files.get("lua", ())
     if facts.kind == CARTOGRAPHER and (lua or facts.usual):
         folder, file = os.path.split(path_for(given.robot, *lua[:1] or (OPTIONS,)))
-        words = (*words, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
+        # In place of the vendor's file.
+        flags = {at + more for at, it in enumerate(words) if it in LUA_FLAGS for more in (0, 1)}
+        kept = (it for at, it in enumerate(words) if at not in flags)
+        words = (*kept, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
     return made._replace(
         arguments=tuple(words),
         components=tuple(
@@ -292,7 +292,7 @@ def _with_launch_settings(plan: FleetPlan, robot: RewrittenRobot, it: Start, nam
         package=package,
         executable="" if it.plugin else program,
         plugin=program if it.plugin else "",
-        arguments=it.arguments if own.kind in _WORDS_OF_BUILD else own.arguments,
+        arguments=it.arguments if own.kind == STATE else own.arguments,
         environment=own.environment,
         process=own.process,
         number=own.number,

@@ -29,8 +29,9 @@ RULES = tuple(sorted(_DECLARED, key=lambda it: it.code))
 
 
 def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
-    """Return a finding about a launch at its level there: an unmet claim becomes an error, and what
-    the driver of a real robot may send a note."""
+    """Return a finding about a launch at its certain level.
+
+    An unmet claim becomes an error, and what the driver of a real robot may send a note."""
     if it.code in CLAIMS and it.level == WARNING:
         return it._replace(level=ERROR)
     if it.code not in FOR_DRIVERS or it.level not in (ERROR, WARNING):
@@ -69,7 +70,7 @@ def _moves_itself(model: Model, launched: Launched, seen: Index) -> bool:
 
 
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
-    """Yield the findings; nodes that another launch file may start are missing inconclusively."""
+    """Yield the findings; a missing node is inconclusive if another launch file may start it."""
     sources = {it.name: it.node_set or it.place.file for it in plan.nodes}
     begun = {"", *(sources.get(it.name, "") for it in seen.nodes)}
     for it in found:

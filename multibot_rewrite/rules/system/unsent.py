@@ -66,7 +66,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 
 
 def _is_of_like_robot(seen: Index, name: str, robot: str) -> bool:
-    """Return whether a name is of a robot that is alike but for what sends that name."""
+    """Return whether a name is of another robot that is alike except for the name's sender."""
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()
@@ -166,7 +166,7 @@ def _usual_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Find
     hears = any(end.type == TF and end.role == SUBSCRIBES for end in seen.by_node.get(it.node, ()))
     if sender is None and usual and edges and not seen.in_doubt and hears:
         message = f"reads frame {it.frame}, but no known node sends it"
-        return _finding(seen, it, message, "name the node or node set that sends it", NOTE)
+        return _lookup_finding(seen, it, message, "name the node or node set that sends it", NOTE)
     if sender is None:
         return _unknown_frame_finding(seen, it, edges)
     place = f" ({sender.place})" if sender.place != NOWHERE else ""
@@ -175,7 +175,9 @@ def _usual_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Find
     hint = f"{sends}; use a frame that is sent, or name the node that does"
     # A map often comes from a node that is started apart.
     level = NOTE if plain == "map" else WARNING
-    return _finding(seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level)
+    return _lookup_finding(
+        seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level
+    )
 
 
 def _unknown_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
@@ -184,7 +186,7 @@ def _unknown_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Fi
     if not near and (seen.system.environment.settled != QUIET or not edges):
         return None
     hint = f"did you mean {near}?" if near else "send it, or use a frame that is sent"
-    return _finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
+    return _lookup_finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
 
 
 def _sent_transform(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
@@ -210,19 +212,19 @@ def _state_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | 
         root = root_of(it.frame, above)
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.parent}"
         hint = f"start what sends {it.parent} -> {root}: localization, or odometry"
-        return _finding(seen, it, f"{message}: the tree begins with {root}", hint, WARNING)
+        return _lookup_finding(seen, it, f"{message}: the tree begins with {root}", hint, WARNING)
     frames = frames_in(edges)
     if near := "" if it.frame in frames else nearest(it.frame, sorted(frames), MISTYPED):
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.frame}"
-        return _finding(seen, it, message, f"did you mean {near}?", WARNING)
+        return _lookup_finding(seen, it, message, f"did you mean {near}?", WARNING)
     message = (
         f"has the transform {it.parent} -> {it.frame} as its state, but no known node sends it"
     )
     hint = "name the node that sends it, or make the virtual joint fixed"
-    return _finding(seen, it, message, hint, NOTE)
+    return _lookup_finding(seen, it, message, hint, NOTE)
 
 
-def _finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
+def _lookup_finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
     return frame_not_sent.finding(
         message, hint, level=level,
         robot=seen.robot(it.node), node=it.node, names=(it.frame,), **last_place([it]),
