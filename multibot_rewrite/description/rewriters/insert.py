@@ -213,8 +213,7 @@ def _filling(made: Insertion, there: etree._Element, path: str) -> Insertion:
 def _remaps(
     host: etree._Element, section: PluginDefinition, naming: Naming, home: etree._Element | None
 ) -> Iterator[Insertion]:
-    """Yield a rule for each topic that only a remap can move, unless the file has one; and one for
-    each that is of a whole process, without the namespace: there those of the first robot count."""
+    """Yield a rule for each topic that only a remap can move, unless the file has one."""
     rules = rules_in(home)
     parent, wrap = (host, "ros") if home is None else (home, "")
     node, namespace = named(host, section)
@@ -236,6 +235,7 @@ def _remaps(
         of_controllers = section.process_wide and topic in section.publishes
         made = Insertion(parent, wrap, xml, "topic", topic, target)
         yield made._replace(of_controllers=of_controllers)
+    # Of a whole process those of the first robot count: they have to be the same for all.
     for rule in rules if naming.topics == NAMESPACE else ():
         old, _, new = relative(rule, host, section, naming).partition(":=")
         if old and all(it.source != old for it in rules):
