@@ -335,8 +335,10 @@ def _lost_links(seen: Index, it: Description, robot: str) -> list[str]:
 
 
 def _joint_fault(seen: Index, it: Description, robot: str) -> tuple[str, str, str] | None:
-    """Return what is wrong where joint states in its namespace have none of its joints, or lack some
-    and no transform leads to links. A link that nobody measures is only not shown, but planned with."""
+    """Return what is wrong where joint states in its namespace lack joints of a description.
+
+    They have none of them, or no transform leads to links of those that lack. A link that nobody
+    measures is only not shown, but planned with."""
     space = it.topic.rpartition("/")[0]
     heard = (
         one for one in seen.system.heard if one.joints and one.topic.rpartition("/")[0] == space
