@@ -118,9 +118,7 @@ def main(words: Iterable[str]) -> int:
                 wrong += done.returncode not in FINE
                 found = [" ".join(it) for it in FINDING.findall(done.stdout)]
                 last = done.stderr.splitlines()[-1:]
-                print(
-                    name, done.returncode, f"{seconds:.1f} s", found, *last, sep=" | ", flush=True
-                )
+                print(name, done.returncode, found, *last, sep=" | ", flush=True)
                 if done.returncode not in FINE:
                     print(done.stdout, done.stderr, sep="\n", flush=True)
     print(
