@@ -473,7 +473,7 @@ ALLOWED = (
     "description/sources/child/", "description/sources/processes.py",
     "description/sources/packages.py", "description/sources/access.py",
 )  # fmt: skip
-PACKAGE_DATA = ("files(", "(_FOLDER, file)")
+PACKAGE_DATA = ("files(", "(_FOLDER, file)", "__path__")
 
 
 def unmarked(path: Path) -> list[str]:

@@ -226,13 +226,17 @@ def written(path: Path, graph: System) -> Path:
 def _headers(graph: System, name: str, type_: str) -> tuple[str, ...]:
     """Return what was heard there, else a frame of the robot whose topic it is."""
     heard = tuple(it.frame for it in graph.heard if it.topic == name)
-    return heard or ((_frame(graph, name),) if type_ in HEADED else ())
+    return heard or ((_frame(graph, name, type_),) if type_ in HEADED else ())
 
 
-def _frame(graph: System, name: str) -> str:
+def _frame(graph: System, name: str, type_: str) -> str:
+    """Return a frame of the robot whose topic it is; a map is in the one above."""
     word = name.split("/")[1]
-    own = (it.child for it in graph.edges if word in (*it.child.split("/"), *it.topic.split("/")))
-    return next(own, next((it.child for it in graph.edges), ""))
+    own = (it for it in graph.edges if word in (*it.child.split("/"), *it.topic.split("/")))
+    edge = next(own, next(iter(graph.edges), None))
+    if edge is None:
+        return ""
+    return edge.parent if type_ == MAP else edge.child
 
 
 # ---------------------------------------------------------------- a launch file
