@@ -207,8 +207,9 @@ def _at_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) 
     # The names of the sources have no robot.
     it, spec = finding, robot.spec
     file, line, column = (it.file, it.line, it.column) if it.file else (spec.file, spec.line, 1)
-    who = f"{it.node} of {spec.name} " if by_sources else f"{it.node} "
-    message = f"{who}{it.message}" if it.node else it.message
+    own = f"{it.node} of {spec.name}" if by_sources and it.node else it.node
+    message = it.message if it.message.startswith(it.node) else f"{it.node} {it.message}"
+    message = message.replace(it.node, own, 1)
     return it._replace(message=message, node="", robot="", file=file, line=line, column=column)
 
 

@@ -60,16 +60,16 @@ def run(options: argparse.Namespace) -> int:
     made = make_outputs(plan, os.path.abspath(options.output))
     back = read_back(plan, made, os.path.abspath(options.output))
     # What is told in both is said once, at the level of the folder.
-    again = {(it.code, it.names) for it in back if it.names}
-    told = (
-        it
-        for it in made.findings
-        if it._replace(level=ERROR) not in back and (it.code, it.names) not in again
+    again = {(it.code, it.names or it) for it in back}
+    new = (
+        it for it in made.findings if (it.code, it.names or it._replace(level=ERROR)) not in again
     )
     held = coverage(made.planned)
-    every = (*told, *back, *plan.fleet.table.problems)
-    # A key of the fleet file in place of the option of urdf-postfix.
-    both = dict.fromkeys(it._replace(hint=it.hint.replace("--topics ", "topics: ")) for it in every)
+    every = [*new, *back, *plan.fleet.table.problems]
+    # Keys of the fleet file in place of the options of urdf-postfix.
+    for key in ("layout", "affix", "topics"):
+        every = [it._replace(hint=it.hint.replace(f"--{key} ", f"{key}: ")) for it in every]
+    both = dict.fromkeys(every)
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
     about = About([options.fleet], plan.words, plan.file.distro, held)
     if report_findings_too(options, chosen(options, ordered), about):

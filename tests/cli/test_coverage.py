@@ -245,3 +245,26 @@ def test_a_build_has_the_names_of_robots_and_the_keys_of_the_fleet_file(
     assert [it["robot"] for it in told["coverage"]["robots"]] == ["r1", "r2"]
     hints = [it["hint"] for it in told["findings"] if "camera_info" in it["message"]]
     assert any("topics: namespace" in it for it in hints) and "--topics" not in str(hints)
+
+
+CLASSIC_DRIVE = (
+    '<robot name="cart"><link name="base_link"><inertial><mass value="1"/><inertia ixx="1" iyy="1"'
+    ' izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link><gazebo><plugin name="drive"'
+    ' filename="libgazebo_ros_planar_move.so"><ros><remapping>/tf:=tf</remapping></ros>'
+    "</plugin></gazebo></robot>"
+)
+
+
+def test_a_build_of_one_robot_names_its_node_and_the_key_of_the_layout_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The plugin's rule moves its tf away from the one /tf of the layout."""
+    (tmp_path / "cart.urdf").write_text(CLASSIC_DRIVE)
+    fleet = tmp_path / "fleet.yaml"
+    layout = "layout: frames-per-robot\ndistro: humble\n"
+    fleet.write_text(f"description: cart.urdf\n{layout}robots: [{{name: r1}}]\n")
+    main(["build", str(fleet), "-o", str(tmp_path / "out")])
+    told = capsys.readouterr().err
+    assert "use layout: both" in told and "--layout" not in told
+    (line,) = (it for it in told.splitlines() if " MG405 " in it)
+    assert line.count("/r1/robot_state_publisher") == 1

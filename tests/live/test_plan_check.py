@@ -170,7 +170,8 @@ def test_a_wrong_plan_is_one_line(
 def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", str(plan), "--from", str(plan)]) == 2
-    assert capsys.readouterr().err == f"multibot: {plan}: a plan; use multibot check\n"
+    use = "use multibot check PLAN, which compares a snapshot with it"
+    assert capsys.readouterr().err == f"multibot: {plan}: a plan; {use}\n"
 
 
 # ---------------------------------------------------------------- where a node comes from
