@@ -242,8 +242,13 @@ def test_the_environment_of_a_launch_is_that_of_all(
         here('first'),
         GroupAction([SetEnvironmentVariable('SIDE', 'left'), here('second')]),
     """
-    found = actions(tmp_path, body)
-    common = {"RMW": "zenoh", "OLD_PATH": "/more", "GZ_SIM_RESOURCE_PATH": "/meshes"}
+    found = actions(tmp_path, body, "__import__('os').environ['MODE'] = 'fast'")
+    common = {
+        "MODE": "fast",
+        "RMW": "zenoh",
+        "OLD_PATH": "/more",
+        "GZ_SIM_RESOURCE_PATH": "/meshes",
+    }
     assert of(found, "first")["environment"] == common
     assert "additional_env" not in of(found, "first")
     assert of(found, "second")["additional_env"] == {"SIDE": "left"}

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from linecache import cache
+
 import pytest
 
 from multibot_rewrite import InputError
@@ -79,6 +81,7 @@ def test_a_file_that_is_lost_is_to_be_put_there() -> None:
 
 def raised(text: str, file: str) -> BaseException:
     """Return what a program of that name raises."""
+    cache[file] = (len(text), None, text.splitlines(keepends=True), file)
     try:
         exec(compile(text, file, "exec"), {})
     except Exception as error:
@@ -91,7 +94,10 @@ def raised(text: str, file: str) -> BaseException:
     [
         ("raise ValueError('x')", "a.launch.py", True), ("raise ValueError('x')", "a.py", False),
         ("1 / 0", "a.launch.py", True), ("nowhere", "a.launch.py", True),
-        ("raise OSError('x')", "a.launch.py", False),
+        ("{}['MODEL']", "a.launch.py", True), ("assert 1 > 2", "a.launch.py", True),
+        ("class E(Exception): pass\nraise E('x')", "a.launch.py", True),
+        ("launch_configurations = {}\nlaunch_configurations['x']", "a.launch.py", False),
+        ("raise OSError('x')", "a.launch.py", False), ("[][0]", "a.launch.py", False),
         ("raise ValueError('no /dev/ttyUSB0')", "a.launch.py", False),
         ("raise RuntimeError('a missing required argument x')", "a.py", True),
         ("raise TypeError('Failed to normalize given item of type')", "a.py", True),

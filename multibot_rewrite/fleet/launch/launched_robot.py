@@ -101,7 +101,7 @@ def why_not(graph: LaunchGraph) -> str:
     raised = (
         it.message for it in graph.notes if it.fails and "FileNotFoundError" not in it.message
     )
-    ends = (f"the launch ends with {it}" for it in raised)
+    ends = (f"the launch ends here: {it}" for it in raised)
     return next(chain((f"{it}; {hint}" for it in found), ends), "")
 
 

@@ -17,8 +17,8 @@ from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 if TYPE_CHECKING:
     from traceback import StackSummary
 
-# What a launch file raises by its own words; what is missing on a machine is raised otherwise, too.
-_OF_CODE = (RuntimeError, NameError, TypeError, ValueError, ZeroDivisionError)
+# What a launch file may raise on one machine only: something is missing, or a list of devices is empty.
+_ELSEWHERE_FINE = (OSError, ImportError, IndexError, MemoryError)
 _OF_MACHINE = lazy_compile(r"(?:^|[\s\"'=:])/\w")
 # ament_index_python and Python say it so; the share folder of a package that is stood in for
 # (source_packages.py).
@@ -225,11 +225,16 @@ def is_certain(error: BaseException, launch_file: str) -> bool:
     if is_no_condition(error) or isinstance(error, RecursionError):
         return True
     own = frame is not None and frame.f_code.co_filename.endswith(".launch.py")
+    # An include that is not here may set a launch configuration.
+    of_launch = isinstance(error, KeyError) and "launch_configurations" in (
+        _stack_frames(error)[-1].line or ""
+    )
     # What is taken of a module that is not there does not fail where it is.
     known = frame is None or not any(map(is_unknown, (frame.f_globals | frame.f_locals).values()))
     # So launch itself says of an include.
     sure = own or is_no_text(error) or _REQUIRED in str(error)
-    return sure and known and isinstance(error, _OF_CODE) and not _OF_MACHINE.search(str(error))
+    elsewhere = of_launch or isinstance(error, _ELSEWHERE_FINE) or _OF_MACHINE.search(str(error))
+    return sure and known and not elsewhere
 
 
 def _frame(error: BaseException) -> FrameType | None:

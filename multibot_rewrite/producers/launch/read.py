@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import (
@@ -106,7 +106,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
 def _try_to_read(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
     """Return the graph; None if something was ``missing`` that now has a stand-in."""
     try:
-        graph = _visited_graph(_described(order), order)
+        graph = _visited_graph(order)
     except UnreadableError:
         raise
     except (Exception, SystemExit) as error:  # a launch file may raise anything
@@ -154,7 +154,7 @@ def read_own(file: str, folder: str) -> LaunchGraph:
         FindPackageShare.find = _share  # type: ignore[method-assign, assignment]
         keep_places()
         try:
-            return with_real_paths(_visited_graph(_described(order), order))  # type: ignore[no-any-return]
+            return with_real_paths(_visited_graph(order))  # type: ignore[no-any-return]
         except (Exception, SystemExit) as error:  # as above
             raise UnreadableError(failure(error)) from error
         finally:
@@ -170,7 +170,19 @@ def _share(_self: FindPackageShare, package_name: str) -> str:
         return os.path.join(tempfile.gettempdir(), NOT_INSTALLED, "share", package_name)
 
 
-def _visited_graph(description: Any, order: LaunchOrder) -> LaunchGraph:
+def _visited_graph(order: LaunchOrder) -> LaunchGraph:
+    """Return what loading and visiting a launch file finds; the environment stays as it was."""
+    before = dict(os.environ)
+    try:
+        return _found_in(_described(order), order, before)
+    finally:
+        # The environment of launch is that of its process, and the file may be read again.
+        for name in [it for it in os.environ if it not in before]:
+            del os.environ[name]
+        os.environ.update(before)
+
+
+def _found_in(description: Any, order: LaunchOrder, before: Mapping[str, str]) -> LaunchGraph:
     """Return what visiting a description finds; raises UnreadableError."""
     # Without an argument that the file itself has to be given it is not read.
     for it, includes in getattr(description, ASKED)():
@@ -182,7 +194,6 @@ def _visited_graph(description: Any, order: LaunchOrder) -> LaunchGraph:
     folder = {"current_launch_file_directory": os.path.dirname(path)}
     context.extend_locals({"current_launch_file_path": path, **folder})
     context.launch_configurations.update(order.arguments)
-    before = dict(context.environment)
     seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, [], [], order.every)
     unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
@@ -193,10 +204,6 @@ def _visited_graph(description: Any, order: LaunchOrder) -> LaunchGraph:
     files, ignored = tuple(seen.files.items()), tuple(dict.fromkeys(seen.unread))
     own = tuple(changed_environment(seen).items())
     notes = (*notes, *_lost_variables(seen, path))
-    # The environment of launch is that of its process, and the file may be read again.
-    for name in [it for it in context.environment if it not in before]:
-        del context.environment[name]
-    context.environment.update(before)
     return LaunchGraph(
         *(tuple(seen.nodes), notes, files),
         unread=ignored,

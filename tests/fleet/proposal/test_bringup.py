@@ -470,7 +470,15 @@ BAD = {
     "it raises": ("x = 1 / 0", "ZeroDivisionError"),
     "it raises while it is launched": (
         "x = GroupAction([Node(package='a', executable='b'),"
-        " OpaqueFunction(function=lambda context: 1 / 0)])", "the launch ends with ZeroDivisionError",
+        " OpaqueFunction(function=lambda context: 1 / 0)])", "the launch ends here: ZeroDivisionError",
+    ),
+    "it has no such key while it is launched": (
+        "x = GroupAction([Node(package='a', executable='b'),"
+        " OpaqueFunction(function=lambda context: {}['MODEL'])])", "ends here: KeyError: 'MODEL'",
+    ),
+    "it ends itself while it is launched": (
+        "x = GroupAction([Node(package='a', executable='b'),"
+        " OpaqueFunction(function=lambda context: __import__('sys').exit(3))])", "it ends itself",
     ),
     "it needs an argument": (
         "x = DeclareLaunchArgument('ip')", "it has to be given ip; write ip:=VALUE after it",
