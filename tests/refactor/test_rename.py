@@ -152,7 +152,7 @@ def test_an_srdf_follows_its_urdf(tmp_path: Path) -> None:
     ("old", "new", "kind", "said"),
     [
         ("base_lin", "x", "link", "has a link 'base_lin'; did you mean 'base_link'?"),
-        ("base_link", "left_wheel", "link", "has a link 'left_wheel' already"),
+        ("base_link", "left_wheel", "link", "has a link 'left_wheel'; give another"),
         ("base_link", "base_link", "link", "has this name already; give another"),
         ("base_link", "a b", "link", "'a b' is no name of a link"),
         ("base_link", "x", "wheel", "kind 'wheel' is not known"),
