@@ -226,7 +226,7 @@ def test_a_name_that_a_file_of_the_folder_uses_is_taken(
     if said:
         with pytest.raises(UsageError) as found:
             rename_symbol(old, new, str(tmp_path), kind=kind)
-        assert f"{tmp_path / name}{'' if said[0] == ':' else ' '}{said} already" in str(found.value)
+        assert f"{tmp_path / name}{'' if said[0] == ':' else ' '}{said}; give" in str(found.value)
     else:
         made = rename_symbol(old, new, str(tmp_path), kind=kind)
         assert [Path(it).name for it in made.after] == ["r.urdf"]
