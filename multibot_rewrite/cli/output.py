@@ -139,7 +139,7 @@ def _pipe_number(stream: TextIO | None) -> int | None:
 
 
 def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
-    """Return the same items, with a progress bar on a terminal if there are many."""
+    """Return the items unchanged; many on a terminal show a progress bar."""
     if total < MANY or not sys.stderr.isatty():
         return items
     from rich.console import Console

@@ -138,7 +138,7 @@ def short_help(command: Command, prog: str) -> str:
 
 
 def _fitted(example: Example) -> str:
-    """Return an example in one line, empty if that is too long."""
+    """Return an example in one line; empty if the line is too long."""
     lines = (
         f"  {example.command}    # {example.about}" * bool(example.about),
         f"  {example.command}",

@@ -51,7 +51,7 @@ def number(version: str) -> tuple[int, ...]:
 
 @lru_cache(maxsize=1024)  # so many facts, so few words
 def by_version(words: str) -> str:
-    """Return release words, ``PACKAGE VERSION+`` as its releases (a condition where it came later)."""
+    """Return release words, with ``PACKAGE VERSION+`` replaced by the releases that have it."""
     return ", ".join(it for term in words.split(",") for it in _terms_by_version(term.strip()))
 
 

@@ -185,7 +185,7 @@ def _rviz_windows(context: Context) -> list[Action]:
     fleet = fleet_of(context, _configuration("fleet"))
     windows = robot_windows(fleet.plan, each=word == EACH)
     if not windows:
-        raise UsageError(f"rviz:={word}: {fleet.file} has no rviz: under related_files")
+        raise UsageError(f"rviz:={word}: {fleet.file}: write rviz: under related_files")
     if word == ONE and len(windows) > 1:
         # What works for one robot alone has a window of its own besides.
         shared = [it for it in windows if not it[1].robot]

@@ -109,7 +109,7 @@ def is_model(path: str) -> bool:
 
 
 def acts(it: Looked) -> bool:
-    """Return whether it can move, or senses. A model of a thing has at most a plugin of its own."""
+    """Return whether a model can move or sense. A mere thing has at most a plugin of its own."""
     if it.tag != "sdf" or it.links > 1 or any(_moving_joints(it)):
         return True
     return it.root is not None and next(it.root.iter("sensor"), None) is not None
@@ -219,7 +219,7 @@ def _package_name(path: str) -> str:
 
 
 def _stem(path: str) -> str:
-    """Return the name of a description: that of its file, for a model that of its folder."""
+    """Return the name of a description: its file's name, for a model its folder's."""
     stem = os.path.basename(path).partition(".")[0]
     is_model = _COPY.sub("", stem).strip() == "model"
     return os.path.basename(os.path.dirname(path)) if is_model else stem

@@ -205,7 +205,7 @@ def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
 
 
 def with_hardware_loaded(it: Looked, reach: Reach) -> Looked:
-    """Return it with the argument that makes a simulator's plugin load its hardware."""
+    """Return a description with the argument that makes a simulator's plugin load its hardware."""
     return _with_switch(it, lambda root: loads_hardware(root) and suits_simulator(root), reach)
 
 

@@ -99,9 +99,9 @@ class Found(NamedTuple):
 
     @property
     def read(self) -> list[Reading]:
-        """What its launch files start: one that was named as it is launched, others with any arguments.
+        """What its launch files start: the named ones with their arguments, or all others with any.
 
-        Raises InputError for one that was named and cannot be read."""
+        Raises InputError for a named one that cannot be read."""
         return [*map(read_named, self.named)] or read_any(self.launch)
 
 
@@ -118,7 +118,7 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
             hint = f"did you mean {inside[0]}?" if inside else "give a description or a folder"
             raise UsageError(f"{path or repr(path)}: {what}; {hint}")
         if not _can_be_named(path):
-            raise UsageError(f"{path}: its name is no UTF-8, as that in a YAML file is; rename it")
+            raise UsageError(f"{path}: its name is not UTF-8, and YAML takes no other; rename it")
     named = [*dict.fromkeys(os.path.normpath(it) for it in paths if not os.path.isdir(it))]
     meant = [it for it in named if it.endswith(_BESIDE)]
     files = [it for it in named if it not in meant]

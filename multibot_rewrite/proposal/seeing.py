@@ -111,7 +111,7 @@ def see(wanted: Wanted) -> Seen:
         texts += [it.message.replace(f"; {ROOTS}", "") for it in told]
         listed = ", ".join(dict.fromkeys(texts))
         file = os.path.basename(found.named[0].file)
-        raise UsageError(f"{error}; so nothing of {file} is in a fleet: {listed}") from None
+        raise UsageError(f"{error}; without it a fleet has none of {file}: {listed}") from None
 
 
 def _looked_at(wanted: Wanted, found: Found) -> Seen:

@@ -243,7 +243,7 @@ def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str
             taken |= {element.get("name", ""), *words}
     free = next((name for name in names if name not in taken), None)
     if free is None:
-        raise UsageError(f"{', '.join(names)} are all names of its arguments or properties")
+        raise UsageError(f"{', '.join(names)} are all in use in it: rename one of them")
     return free
 
 

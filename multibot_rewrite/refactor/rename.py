@@ -166,10 +166,10 @@ def _check_free(
             own = (one.kind,) if one.kind else one.kinds
             if one.text == symbol.new and not set(own).isdisjoint(kinds):
                 what = f"has a {one.kind}" if one.kind else f"uses the {symbol.kind}"
-                raise UsageError(f"{it.path} {what} {symbol.new!r} already")
+                raise UsageError(f"{it.path} {what} {symbol.new!r}; give another")
     for path, _, file, starts in _files_with(symbol.new, kinds, package, changes):
         line, _ = locate(file.text.encode(), len(file.text[: min(starts)].encode()))
-        raise UsageError(f"{path}:{line} uses the {symbol.kind} {symbol.new!r} already")
+        raise UsageError(f"{path}:{line} uses the {symbol.kind} {symbol.new!r}; give another")
 
 
 def _name_edits(it: Description, symbol: _Symbol) -> Iterator[ValueEdit]:

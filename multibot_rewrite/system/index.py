@@ -262,13 +262,13 @@ class Index(NamedTuple):
     @property
     @once
     def is_live(self) -> bool:
-        """Return whether it was seen running, and not read from launch files."""
+        """Return whether the system was seen running, and not read from launch files."""
         return not any(it.place.file for it in self.system.nodes)
 
     @property
     @once
     def is_observed(self) -> bool:
-        """Return whether it was seen running, and is of no source that says what a node does."""
+        """Return whether the system was seen running, and no source says what its nodes do."""
         return self.is_live and not any(it.known for it in self.system.nodes)
 
     @property

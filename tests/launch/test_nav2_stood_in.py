@@ -253,7 +253,7 @@ def test_a_window_needs_a_config(tmp_path: Path) -> None:
         read_here(kept, tmp_path)
         words = (("fleet", str(file)), ("rviz", "each"))
         notes = launch_graph(LaunchOrder(str(FILE), words, trusted=True)).notes
-    assert any(f"rviz:=each: {file} has no rviz: under related_files" in it.message for it in notes)
+    assert any(f"rviz:=each: {file}: write rviz: under related_files" in it.message for it in notes)
 
 
 @pytest.mark.parametrize("clock", [True, False, None])

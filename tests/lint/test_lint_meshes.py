@@ -128,7 +128,7 @@ SAID = {
         f" {LOADED}",
     ],
     "Base.stl": [
-        "MB713 note 'Base.stl' is not there from here; use package://arm/meshes/Base.stl",
+        "MB713 note 'Base.stl' is not next to this file; use package://arm/meshes/Base.stl",
     ],
     "/home/me/Base.stl file:///home/me/Bass.stl": [
         f"MB704 warning '/home/me/Base.stl' is a path of one machine (and 1 more); {PLACED}",

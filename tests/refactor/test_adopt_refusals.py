@@ -49,7 +49,7 @@ REFUSED = {
     ),
     "every name of the argument in use": (
         {"r.urdf.xacro": robot(TAKEN)},
-        ("are all names of its arguments or properties",),
+        ("are all in use in it: rename one of them",),
     ),
     "a file of macros": (
         {"r.xacro": robot("").replace('<link name="base"/>', '<xacro:macro name="m"/>')},

@@ -152,7 +152,7 @@ def test_an_srdf_follows_its_urdf(tmp_path: Path) -> None:
     ("old", "new", "kind", "said"),
     [
         ("base_lin", "x", "link", "has a link 'base_lin'; did you mean 'base_link'?"),
-        ("base_link", "left_wheel", "link", "has a link 'left_wheel' already"),
+        ("base_link", "left_wheel", "link", "has a link 'left_wheel'; give another"),
         ("base_link", "base_link", "link", "has this name already; give another"),
         ("base_link", "a b", "link", "'a b' is no name of a link"),
         ("base_link", "x", "wheel", "kind 'wheel' is not known"),
@@ -226,7 +226,7 @@ def test_a_name_that_a_file_of_the_folder_uses_is_taken(
     if said:
         with pytest.raises(UsageError) as found:
             rename_symbol(old, new, str(tmp_path), kind=kind)
-        assert f"{tmp_path / name}{'' if said[0] == ':' else ' '}{said} already" in str(found.value)
+        assert f"{tmp_path / name}{'' if said[0] == ':' else ' '}{said}; give" in str(found.value)
     else:
         made = rename_symbol(old, new, str(tmp_path), kind=kind)
         assert [Path(it).name for it in made.after] == ["r.urdf"]

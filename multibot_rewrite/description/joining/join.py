@@ -82,7 +82,7 @@ def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
         raise InputError(f"{part.file}: its link {WORLD!r} {what}; give that another name")
     free = next((it for it in joints if it.type in ("floating", "planar")), None)
     if free is not None:
-        raise InputError(f"{part.file}: joint {free.name!r} is {free.type}: nothing fixes the part")
+        raise InputError(f"{part.file}: joint {free.name!r} is {free.type}: make it a fixed one")
     blocks = [it for it in root.iterchildren("gazebo") if it.get("reference") == WORLD]
     gone = (kept.left_out(spans, it) for it in (link, *blocks))
     notes = (f"{part.file}:{it.sourceline}: left out: it is about {WORLD!r}" for it in blocks)

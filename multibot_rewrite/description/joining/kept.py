@@ -138,7 +138,7 @@ def _end_of_replacement(spans: Spans, found: re.Match[bytes], file: str) -> int:
         return found.end()
     element = spans.first_from(found.end())
     if element is None:
-        raise InputError(f"{file}: what stood behind a comment 'multibot was' was edited by hand")
+        raise InputError(f"{file}: nothing follows a comment 'multibot was': join the parts again")
     return spans.end_of(element)
 
 

@@ -174,7 +174,7 @@ def wheels_in(element: _Element) -> bool:
 
 
 def _turns_on(joint: _Element | None) -> bool:
-    """Return whether it may be a wheel's joint, without limits or with wide ones."""
+    """Return whether a joint may be a wheel's: its limits are missing or wide."""
     if joint is None:
         return True
     limit = joint.find("limit") if joint.get("type") == "revolute" else None

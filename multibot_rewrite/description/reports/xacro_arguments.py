@@ -71,11 +71,10 @@ class Argument(NamedTuple):
 
     @property
     def word(self) -> str:
-        """The value for robots; empty if the argument is not for names. Raises nothing.
+        """The value for robots, as ``{robot}_``; empty if it is not for names. Raises nothing.
 
-        It is for that if it goes before or behind names or is a namespace, and is empty by default or
-        in every link and joint: lbr of lbr_link_0 is in the place of the robot's name. So is that of a
-        namespace of all plugins. Raises nothing.
+        It is for names if it is their beginning, their end or a namespace. Besides, it is empty by
+        default, or in every link and joint (lbr of lbr_link_0), or the namespace of all plugins.
         """
         ends = {use.how: use.separator for use in self.uses if use.how in (PREFIX, POSTFIX)}
         spaces = any((use.kind, use.how) == ("namespace", WHOLE) for use in self.uses)

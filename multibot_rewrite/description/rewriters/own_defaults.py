@@ -33,7 +33,7 @@ Hosts = Iterable[tuple[etree._Element, PluginDefinition]]
 
 
 def default_of(host: etree._Element, default: str, naming: Naming) -> str:
-    """Return the value in force if the site is absent: a literal, or made from another topic."""
+    """Return what a plugin takes if the site is absent: a literal, or made from another topic."""
     conditions, asked, default = default.rpartition("?")
     if asked and not all(_condition_holds(host, condition) for condition in conditions.split(",")):
         return ""

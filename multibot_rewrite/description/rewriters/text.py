@@ -12,7 +12,7 @@ from lxml import etree
 
 
 def text_of(element: etree._Element) -> str:
-    """Return the text in force, without white space around it; empty without one."""
+    """Return the first text of an element, also behind comments, stripped; empty without one."""
     text = (element.text or "").strip()
     if text or not len(element):
         return text

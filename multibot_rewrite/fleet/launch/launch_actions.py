@@ -471,7 +471,7 @@ def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, froz
 
 
 def _controller_types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
-    """Yield the types of controllers that no file of the robot declares."""
+    """Yield a parameter ``NAME.type`` and its value for controllers whose type no file declares."""
     # Without one a controller is not loaded (ros2_control controller_manager.cpp).
     file = given.plan.file
     types = {it: type_ for type_, it in load_known_nodes(file.nodes, file.distro).types.items()}

@@ -122,7 +122,7 @@ def _endpoint(
 
 
 def _sure_if(endpoint: Endpoint, is_there: bool | None) -> Endpoint:
-    """Return an endpoint without its condition, if that holds."""
+    """Return an endpoint, without its condition if the condition holds."""
     return endpoint._replace(when="") if is_there else endpoint
 
 

@@ -94,7 +94,7 @@ class _Program:
         """Do nothing: there is nothing to wait for."""
 
     def communicate(self, *_: object, **__: object) -> tuple[Any, Any]:
-        """Return what it printed, and no error."""
+        """Return what the command printed, and an empty error output."""
         return self.made, self.made[:0]
 
     def wait(self, timeout: float | None = None) -> int:

@@ -216,7 +216,7 @@ def is_no_condition(error: BaseException) -> bool:
 
 
 def is_certain(error: BaseException, launch_file: str) -> bool:
-    """Return whether it fails on every machine: a file next to it is missing, or its code raises."""
+    """Return whether a launch file fails on every machine: a file is missing, or its code raises."""
     inner = error.__cause__ or error
     if isinstance(inner, FileNotFoundError):
         folder = os.path.dirname(os.path.realpath(launch_file))

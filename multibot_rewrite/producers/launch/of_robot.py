@@ -284,7 +284,7 @@ def _under_manager(
 
 
 def without_bridges(launched: Launched) -> Launched:
-    """Return the same without bridges to a simulator (a build has its own), but their QoS."""
+    """Return all but the bridges to a simulator (a build has its own); their QoS is kept."""
     gone = {
         name for name, it in launched.started.items() if passes_topics_on(it.package, it.executable)
     }
@@ -471,7 +471,7 @@ def without_robot(given: Run, words: Collection[str]) -> Run:
 
 
 def _without_word(name: str, words: Collection[str]) -> str:
-    """Return a name without the first segment, if that is a word for the robot."""
+    """Return a name without its first segment if this segment is a word for the robot."""
     above, slash, rest = name.partition("/")
     return rest if slash and above in words else name
 

@@ -118,10 +118,10 @@ def _text_of_name(names: Names, spot: Spot, name: str, without: str, depth: int)
         return name
     if name.startswith("@"):
 
-        def inside(found: re.Match[str]) -> str:
+        def braced_value(found: re.Match[str]) -> str:
             return braced(text_in(names, spot, f"<{found[1]}>", "", depth))
 
-        return f"<{_BRACED.sub(inside, name)}>"
+        return f"<{_BRACED.sub(braced_value, name)}>"
     if name.startswith(EACH):
         over = name.removeprefix(EACH)
         text = text_in(names, spot, f"<{over}>", without, depth)

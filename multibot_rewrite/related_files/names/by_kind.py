@@ -63,7 +63,7 @@ def is_component(context: Context, value: str) -> bool:
 
 
 def _path_before_name(context: Context, value: str) -> str:
-    """Return the robot's version of the path before a name: its parts and chained controllers."""
+    """Return a path of joints and controllers (``drive/left_wheel``), each with its robot's name."""
     parts = (
         component(context, it) if is_component(context, it) else controller(context, it)
         for it in value.split("/")
@@ -143,7 +143,7 @@ def _has_prefix(context: Context) -> bool:
 
 
 def _prefix_for_kind(kind: str, context: Context, value: str) -> str:
-    """Return the prefix that the node puts before names of this kind; it may be empty."""
+    """Return the robot's version of a prefix that the node puts before names of this kind."""
     separator = context.names.naming.separators.get(kind)
     own = _argument_prefix(context, kind)
     if own:

@@ -95,7 +95,7 @@ def shown_in(config: RvizConfig) -> tuple[RvizItem, ...]:
 
 
 def is_for_one(it: RvizItem) -> bool:
-    """Return whether it works for the robot alone in whose namespace rviz2 runs."""
+    """Return whether an item works only for the robot in whose namespace rviz2 runs."""
     return it.flag == PROCESS
 
 

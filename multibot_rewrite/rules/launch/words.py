@@ -228,7 +228,7 @@ _TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 
 
 def _is_of_this_machine(path: str) -> bool:
-    """Return whether it may be judged here. What another machine has, or a program makes, may not."""
+    """Return whether the folder of a path is on this machine, and is none for temporary files."""
     folder = os.path.dirname(path)
     return os.path.isdir(folder) and folder not in _TEMPORARY
 

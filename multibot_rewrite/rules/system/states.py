@@ -171,8 +171,8 @@ def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
         for name in names:
             yield nodes_of_one_name.finding(
                 f"{times[name]} nodes have the name {name}",
-                "started twice, or two robots without a namespace of their own; a node that was"
-                " killed stays visible for 20 s",
+                "start it once, or give each robot a namespace of its own; a node that was killed"
+                " stays visible for 20 s",
                 robot=robot, node=name,
             )  # fmt: skip
 

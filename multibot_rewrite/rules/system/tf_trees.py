@@ -36,7 +36,7 @@ def taken_elsewhere(plan: Index) -> Set[str]:
 
 
 def robots_on(plan: Index, tree: Tree) -> Sequence[str]:
-    """Return the robots that publish in a tree, or its topic's robots without a known publisher."""
+    """Return the robots that publish in a tree; if no publisher is known, those of its topic."""
     if not tree.senders:
         return home_of(plan, tree)
     return unique(filter(None, map(plan.robot, sorted(tree.senders))))

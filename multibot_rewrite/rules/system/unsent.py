@@ -148,7 +148,7 @@ def frame_not_sent(seen: Index) -> Iterator[Finding]:
     for (robot, *_), nodes in readers.items():
         it, *others = nodes.values()
         found = (
-            _state_finding(seen, it, sent[robot])
+            _virtual_joint_finding(seen, it, sent[robot])
             if it.parent
             else _usual_frame_finding(seen, it, sent[robot])
         )
@@ -204,7 +204,7 @@ def _sent_transform(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | Non
     return min(found, key=lambda it: robot not in map(seen.robot, it.publishers), default=None)
 
 
-def _state_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+def _virtual_joint_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     above = {edge.child: edge.parent for edge in edges}
     if it.frame in above and it.parent in {*above, *above.values()}:
         return None

@@ -646,7 +646,7 @@ def test_a_description_is_not_guessed_where_a_launch_file_loads_one_that_is_not_
     (file,) = write(robots / "rover/launch", {"up": f"{function}; {DRIVER}"})
     assert main(["init", str(robots), "--launch", file, "--yes", "-o", "-"]) == 2
     said = capsys.readouterr().err
-    assert len(said.splitlines()) == 1 and "up.launch.py is in a fleet: driver, " in said
+    assert len(said.splitlines()) == 1 and "a fleet has none of up.launch.py: driver, " in said
     assert "descriptions it loads is not known: package 'gone' is not installed here" in said
 
 

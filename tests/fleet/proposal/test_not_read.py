@@ -137,7 +137,7 @@ def test_a_name_that_no_fleet_file_can_have(tmp_path: Path, capsys: Any) -> None
     odd = os.fsdecode(os.fsencode(tmp_path) + b"/car\xff.urdf")
     Path(odd).write_text(robot("car", "wheel"))
     assert main(["init", odd, "--yes", "-o", "-"]) == 2
-    assert "its name is no UTF-8, as that in a YAML file is; rename it" in capsys.readouterr().err
+    assert "its name is not UTF-8, and YAML takes no other; rename it" in capsys.readouterr().err
     assert search([str(tmp_path)]).every == ()
 
 

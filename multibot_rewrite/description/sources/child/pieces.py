@@ -215,7 +215,7 @@ def _with_places(value: Any, part: str) -> Any:
 
 
 def _place_in_quotes(text: str, part: str) -> Spot | None:
-    """Return where a text is in quotes, if that is in one place."""
+    """Return where a part is in quotes in a text; None if nowhere or in several places."""
     found = [
         part.find(f"{quote}{text}{quote}")
         for quote in "'\""

@@ -235,7 +235,7 @@ def fitted(
     has: Described,
     spec: RobotSpec,
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes, with settings of ``free`` and ``own`` ones that fit the others."""
+    """Return all nodes; the topics and frames of ``free`` and ``own`` ones fit those of the others."""
     # ``own`` nodes are started by the build: what no file sets of them is the build's to set, too.
     offered = with_odometry(has.offered, nodes)
     settled = []

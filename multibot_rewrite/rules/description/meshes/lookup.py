@@ -147,7 +147,7 @@ def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
     for it in lookups(subject):
         found = _uri_elsewhere(subject, it) if it.folders and not it.found else ""
         if found:
-            yield problem(it.used, f"{it.used.name!r} is not there from here", f"use {found}")
+            yield problem(it.used, f"{it.used.name!r} is not next to this file", f"use {found}")
 
 
 def _uri_elsewhere(subject: Subject, it: MeshFile) -> str:

@@ -237,7 +237,7 @@ def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
 
 
 def _outside(subject: Subject, link: Link, centre: Vector) -> float:
-    """Return how far a centre is from the shapes of its link, if that is too far."""
+    """Return how far a centre is from the shapes of its link, in metres; 0 if near enough."""
     seen, hard = _shapes(subject)[link.element]
     shapes = seen + hard
     # A mesh may show less than what weighs: the shafts of an arm's wrist are within the link before.
