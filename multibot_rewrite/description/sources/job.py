@@ -46,7 +46,7 @@ from multibot_rewrite.description.steps.plan import make_plan
 
 # What an SRDF names of its URDF.
 PARTS = frozenset({"link", "joint"})
-_MODEL = lazy_compile(rb"""<(?:robot|model)\s[^>]*?\bname\s*=\s*["']([^"']+)""")
+_MODEL = lazy_compile(rb"""<(?:robot|model)\b[^<>]*?\sname\s*=\s*["']([^"'<]+)["']""")
 # A value that may name the model, as its declaration does.
 _IN_VALUE = rb"""(?:>\s*|["'/])%s(?:\s*<|["'/]|::)"""
 
