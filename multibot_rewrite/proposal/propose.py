@@ -185,10 +185,11 @@ def unlike(words: Iterable[str]) -> list[str]:
     """Return names for robots that are made of these and differ from each other."""
     found: list[str] = []
     for word in words:
-        plain = "".join(it if it.isalnum() else "_" for it in word.lower()).strip("_") or "robot"
+        letters = (it if it.isascii() and it.isalnum() else " " for it in word.lower())
+        plain = "_".join("".join(letters).split()) or "robot"
         plain = plain if plain[0].isalpha() else f"robot_{plain}"
         plain = plain.rstrip("0123456789")
-        found.append(plain if plain not in found else f"{plain}_{len(found)}_")
+        found.append(plain if plain not in found else f"{plain.rstrip('_')}_{len(found)}_")
     return found
 
 

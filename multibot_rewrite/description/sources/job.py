@@ -46,8 +46,7 @@ from multibot_rewrite.description.steps.plan import make_plan
 
 # What an SRDF names of its URDF.
 PARTS = frozenset({"link", "joint"})
-_MODEL = lazy_compile(rb"<(?:robot|model)\s([^>]*)")
-_NAME = lazy_compile(rb"""\bname\s*=\s*["']([^"']+)""")
+_MODEL = lazy_compile(rb"""<(?:robot|model)\b[^<>]*?\sname\s*=\s*["']([^"'<]+)["']""")
 # A value that may name the model, as its declaration does.
 _IN_VALUE = rb"""(?:>\s*|["'/])%s(?:\s*<|["'/]|::)"""
 
@@ -207,10 +206,8 @@ def reader(
 def _naming_of(job: Job) -> Naming:
     """Return the naming of a description, which renames a model that a plugin looks for by its name."""
     naming = job.naming
-    text = job.urdf[0] if job.urdf else job.data
-    names = (_NAME.search(it[1]) for it in _MODEL.finditer(text))
-    name = next((it[1] for it in names if it), b"")
-    found = name and re.findall(_IN_VALUE % re.escape(name), text)
+    name = _MODEL.search(job.urdf[0] if job.urdf else job.data)
+    found = name and re.findall(_IN_VALUE % re.escape(name[1]), name.string)
     if naming.layout.renames_models or not found or len(found) == 1:
         return naming
     layout = naming.layout._replace(models=True)

@@ -14,9 +14,11 @@ import pytest
 import yaml
 from paths import ROBOTS, ROOT
 
+from multibot_rewrite.base.rosnames import check_robot_names
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_data import FleetText
 from multibot_rewrite.proposal import trying
+from multibot_rewrite.proposal.propose import names_of
 
 TOOL = '<robot name="tool" xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
 
@@ -107,6 +109,13 @@ def test_different_robots_have_names_of_their_own(tmp_path: Path) -> None:
     fleet = made(tmp_path, tmp_path / "rover.urdf", tmp_path / "two_finger_arm.urdf", "-n", 1)
     robots = {it["name"]: it["description"] for it in fleet["robots"]}
     assert robots == {"rover1": "rover.urdf", "two_finger_arm1": "two_finger_arm.urdf"}
+
+
+@pytest.mark.parametrize(
+    "models", [("mp_400", "mp_500"), ("a - b", "c__d"), ("Bücker", "400"), ("ö", "_")]
+)
+def test_names_made_of_any_models_are_names_of_robots(models: tuple[str, str]) -> None:
+    assert check_robot_names(sum(names_of(models, 2), ()))
 
 
 @pytest.mark.more
