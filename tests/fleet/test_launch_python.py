@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.fleet.launch.each_robot import functions
 from multibot_rewrite.fleet.launch.launch_python import to_python
@@ -35,102 +36,12 @@ FULL = RobotStarts(
 )  # fmt: skip
 BARE = RobotStarts("r1", "rover.urdf", "", (), (Start("p", "e"),))
 SAID = not_bridged("r1")
-FUNCTION = f'''\
-def start_r1():
-    """Start rover.urdf in /r1."""
-    # Not started: x (no program)
-    params = [file('r1/p.yaml')]
-    return [
-        Node(
-            package='nav2_amcl',
-            executable='amcl',
-            namespace='/r1',
-            name='amcl',
-            arguments=['--flag', 'v', file('x'), '-q'],
-            parameters=[
-                *params,
-                {{'autostart': True, 'node_names': ['a', 'b']}},
-                CLOCK,
-            ],
-            remappings=[
-                ('/scan', 'scan'),
-            ],
-            output='screen',
-        ),
-        ComposableNodeContainer(
-            package='rclcpp_components',
-            executable='isolated',
-            namespace='/r1',
-            name='box',
-            parameters=[CLOCK],
-            output='screen',
-            composable_node_descriptions=[
-                ComposableNode(
-                    package='p',
-                    plugin='P',
-                    namespace='/r1',
-                    name='c',
-                    parameters=[*params, CLOCK],
-                    remappings=[
-                        ('a', 'b'),
-                    ],
-                ),
-            ],
-        ),
-        *brought_up(
-            LifecycleNode(
-                package='slam_toolbox',
-                executable='sync',
-                parameters=[CLOCK],
-                output='screen',
-            ),
-        ),
-        *if_installed(
-            '{BRIDGE}',
-            {f'"{SAID}"' if "'" in SAID else f"'{SAID}'"},
-            [
-                Node(
-                    package='tf_bridge',
-                    executable='b',
-                    parameters=[
-                        {{'text': text('r1/r.urdf'), 'n': 1.5, "it's": "it's"}},
-                        CLOCK,
-                    ],
-                    output='screen',
-                ),
-            ],
-        ),
-        GroupAction(
-            [
-                Node(
-                    package='ros_gz_sim',
-                    executable='create',
-                    arguments=['-name', 'r1', '-x', '1.0'],
-                    parameters=[CLOCK],
-                    output='screen',
-                ),
-            ],
-            condition=IfCondition(LaunchConfiguration('simulator')),
-        ),
-        GroupAction(
-            [
-                Node(
-                    package='rviz2',
-                    executable='rviz2',
-                    arguments=['-d', file('r1/w.rviz')],
-                    parameters=[CLOCK],
-                    output='screen',
-                ),
-            ],
-            condition=IfCondition(LaunchConfiguration('rviz')),
-        ),
-    ]
-
-
-ROBOTS = {{
-    'r1': start_r1,
-}}
-'''
+QUOTED = f'"{SAID}"' if "'" in SAID else f"'{SAID}'"
+FUNCTION = (
+    fixture_text("launch_python_function.txt")
+    .replace("BRIDGE", f"'{BRIDGE}'")
+    .replace("SAID", QUOTED)
+)
 
 
 def fleet(*robots: RobotStarts, **more: object) -> FleetStarts:

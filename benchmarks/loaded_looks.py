@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Looks at healthy systems of real nodes on a machine that is kept busy: none may tell an error.
 
-python tests/support/loaded_looks.py [SYSTEMS] [SEED] [BURNERS]
+python benchmarks/loaded_looks.py [SYSTEMS] [SEED] [BURNERS]
 
 Three looks at each of so many systems, which a seed draws: node sets, layout, release and robots
 differ. Their nodes send transforms, scans, odometry and IMU data while BURNERS processes compute.
@@ -19,6 +19,8 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from tempfile import gettempdir
 from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 
 import healthy_systems
 import live_commands
