@@ -34,6 +34,11 @@ def said(
 
 
 CONTRADICTIONS = {
+    # bt_navigator.cpp:69 registers its own libraries besides those of the parameter.
+    "bt_navigator {plugin_lib_names: [a_bt_node, nav2_wait_action_bt_node]}": (
+        "warning bt_navigator: plugin_lib_names lists nav2_wait_action_bt_node, which is loaded "
+        "without it, so it is registered twice"
+    ),
     "diff_drive_controller {left_wheel_names: [a, b], right_wheel_names: [c]}": (
         "error diff_drive_controller: left_wheel_names has 2, and right_wheel_names 1: "
         "they go in pairs"

@@ -155,7 +155,7 @@ def _among(it: Demand) -> str:
     return f"is {it.given.value!r}, neither {known}"
 
 
-def _own_library_listed(it: Demand) -> str:
+def _foreign(it: Demand) -> str:
     """Return the fault of a list with a library that Nav2's nodes register anyway; empty if none."""
     own = [str(word) for word in _items(it) if _OWN.fullmatch(str(word))]
     return f"lists {own[0]}, which is loaded without it, so it is registered twice" if own else ""
@@ -257,6 +257,6 @@ def _items(it: Demand) -> list[Any]:
 
 
 _OF_OTHERS = _with, _without, _unlike, _among, _as_many, _instead, _together, _or_true, _alone
-_OF_WORDS = _period, _own_library_listed, _is_one, _once, _renamed, _bonded, _listed
+_OF_WORDS = _period, _foreign, _is_one, _once, _renamed, _bonded, _listed
 _PAIRS = {it.__name__[1:]: it for it in (*_OF_OTHERS, *_OF_WORDS)}
 _ROUNDED = 1e-4
