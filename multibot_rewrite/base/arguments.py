@@ -46,7 +46,7 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
         # inspect takes longer to bind arguments than all readers do: most calls do not need it.
         if len(values) == len(args) + len(kwargs) and needed <= values.keys() <= names:
             read = {name: readers[name](f"{title}: {name}", it) for name, it in values.items()}
-            return _called_with(call, read)
+            return _call_with(call, read)
         given = _bound(takes, title, args, kwargs)
         for name, value in given.arguments.items():
             given.arguments[name] = readers[name](f"{title}: {name}", value)
@@ -55,7 +55,7 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
     return run
 
 
-def _called_with(call: Callable[..., R], values: Mapping[str, Any]) -> R:
+def _call_with(call: Callable[..., R], values: Mapping[str, Any]) -> R:
     return call(**values)
 
 
@@ -76,7 +76,7 @@ def _reader_of_list(read: Reader) -> Reader:
     return lambda what, values: tuple(read(f"{what}[{at}]", it) for at, it in enumerate(values))
 
 
-def _or_none(read: Reader) -> Reader:
+def _reader_or_none(read: Reader) -> Reader:
     return lambda what, value: None if value is None else read(what, value)
 
 
@@ -172,13 +172,13 @@ _SOURCE = _path_or(bytes, "write a path, XML text or bytes")
 READERS: Mapping[str, Reader] = {
     "str | os.PathLike[str] | Mapping[str, Any]": _path_or(Mapping, "write a path, or a dict"),
     "str": _text,
-    "str | None": _or_none(_text),
+    "str | None": _reader_or_none(_text),
     "bool": _bool,
     "int": _int,
     "Iterable[str]": _names,
     "Iterable[Part]": _records,
-    "Mapping[str, str] | None": _or_none(_texts_by_name),
+    "Mapping[str, str] | None": _reader_or_none(_texts_by_name),
     "str | os.PathLike[str]": _path,
     "Source": _source,
-    "Source | None": _or_none(_source),
+    "Source | None": _reader_or_none(_source),
 }

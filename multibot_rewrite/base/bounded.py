@@ -61,7 +61,7 @@ _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
-    """Return the bytes of a file or device; raises OSError, also if too large, and ValueError."""
+    """Return the bytes of a file or device; raises OSError (also if too large) and ValueError."""
     _refuse_pipe(path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.
@@ -270,22 +270,24 @@ def _check_bounds(text: str) -> None:
         if isinstance(event, yaml.CollectionStartEvent):
             above.append((event.anchor, count))
             if len(above) > MAX_DEPTH:
-                _refuse(event, f"it is nested deeper than {MAX_DEPTH} levels")
+                _raise_composer_error(event, f"it is nested deeper than {MAX_DEPTH} levels")
         elif isinstance(event, yaml.CollectionEndEvent):
             anchor, before = above.pop()
             if anchor is not None:
                 anchored[anchor] = count - before
         elif isinstance(event, yaml.AliasEvent):
             if any(event.anchor == anchor for anchor, _ in above):
-                _refuse(event, "the alias is inside the value that it repeats")
+                _raise_composer_error(event, "the alias is inside the value that it repeats")
             repeated += anchored.get(event.anchor, 1)
             count += anchored.get(event.anchor, 1)
             if repeated > MAX_REPEATED:
-                _refuse(event, f"the aliases stand for more than {MAX_REPEATED:,} values")
+                _raise_composer_error(
+                    event, f"the aliases stand for more than {MAX_REPEATED:,} values"
+                )
         count += isinstance(event, yaml.NodeEvent)
 
 
-def _refuse(event: yaml.Event, problem: str) -> NoReturn:
+def _raise_composer_error(event: yaml.Event, problem: str) -> NoReturn:
     from yaml.composer import ComposerError
 
     raise ComposerError(None, None, problem, event.start_mark)  # type: ignore[arg-type]

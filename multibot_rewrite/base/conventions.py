@@ -86,7 +86,7 @@ USUAL_FRAMES = tuple(it.name for it in FRAMES if it.expected)
 
 
 class ToolNode(NamedTuple):
-    """Nodes in addition to any fleet, by a name pattern; ``looks``: it is no sender of its own."""
+    """Nodes in addition to any fleet, by a pattern; ``looks``: only to observe, so no own sender."""
 
     pattern: str
     looks: bool
@@ -128,17 +128,19 @@ def tool_patterns() -> tuple[str, ...]:
 @lru_cache(maxsize=4096)
 def is_tool_word(word: str) -> bool:
     """Return whether a node of this name is a tool, in whatever namespace."""
-    return _any_of(tuple(it.pattern for it in TOOLS)).fullmatch(word) is not None
+    return _pattern_of_any(tuple(it.pattern for it in TOOLS)).fullmatch(word) is not None
 
 
 @lru_cache(maxsize=4096)
 def only_looks(word: str) -> bool:
     """Return whether a node of this name only observes, or passes on what a person asks for."""
-    return _any_of(tuple(it.pattern for it in TOOLS if it.looks)).fullmatch(word) is not None
+    return (
+        _pattern_of_any(tuple(it.pattern for it in TOOLS if it.looks)).fullmatch(word) is not None
+    )
 
 
 @cache
-def _any_of(patterns: tuple[str, ...]) -> re.Pattern[str]:
+def _pattern_of_any(patterns: tuple[str, ...]) -> re.Pattern[str]:
     from fnmatch import translate
 
     return re.compile("|".join(map(translate, patterns)))
@@ -169,7 +171,9 @@ def switches(kind: str) -> Mapping[str, tuple[str, ...]]:
 def switch(kind: str, node: str) -> str:
     """Return the parameter of a node that switches this; empty where none is known."""
     last = node.rpartition("/")[2]
-    found = (name for name, nodes in switches(kind).items() if _any_of(nodes).fullmatch(last))
+    found = (
+        name for name, nodes in switches(kind).items() if _pattern_of_any(nodes).fullmatch(last)
+    )
     return next(found, "")
 
 
@@ -196,7 +200,9 @@ _CHOOSES = lazy_compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 def team(node: str) -> str:
     """Return the node's name, or the name of the nodes that it takes turns with."""
     last = node.rpartition("/")[2]
-    return next((name for name, nodes in TEAMS.items() if _any_of(nodes).fullmatch(last)), node)
+    return next(
+        (name for name, nodes in TEAMS.items() if _pattern_of_any(nodes).fullmatch(last)), node
+    )
 
 
 def chooses(node: str) -> bool:

@@ -63,7 +63,7 @@ def recognised(data: bytes) -> str:
 
 
 def refuse_others(data: bytes, file: str, *wanted: str) -> None:
-    """Raise InputError for a file of a known kind that is not ``wanted``; it names its command."""
+    """Raise InputError, with the command to use, for a file of a known kind that is not ``wanted``."""
     kind = recognised(data)
     if kind and kind not in wanted:
         raise InputError(f"{file}: {KINDS[kind].words}; {KINDS[kind].use}")

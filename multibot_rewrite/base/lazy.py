@@ -64,7 +64,7 @@ def with_gaps(pieces: Sequence[str], gap: str) -> str:
 
 @contextmanager
 def gc_paused() -> Iterator[None]:
-    """Stop the garbage collector in the block: looking for garbage doubles the time of many records."""
+    """Stop the garbage collector in the block: it would double the time of making many records."""
     on = gc.isenabled()
     gc.disable()
     try:

@@ -48,7 +48,9 @@ class SiteRow(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """One value of a document that a site claims; ``start`` is the offset of its element's tag."""
+    """One value of a document that a site claims; ``attribute`` is empty for element text.
+
+    ``start`` is the byte offset of the element's start tag; ``value`` is the parsed value."""
 
     site: SiteRow
     element: "_Element"
@@ -58,7 +60,9 @@ class Claim(NamedTuple):
 
 
 class Edit(NamedTuple):
-    """Replace ``start:end`` by ``before + robot + after``; without ``after``: by ``before``."""
+    """Replace source bytes ``start:end`` by ``before + robot + after``.
+
+    ``after`` is None where the new text does not hold the robot's name (``before`` is all of it)."""
 
     start: int
     end: int

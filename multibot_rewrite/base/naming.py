@@ -28,6 +28,7 @@ FRAME_KINDS = frozenset({"link", "frame"})
 TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
 # What a ROS namespace reaches, or is.
 ROS_KINDS = frozenset({*TOPIC_KINDS, "stem", "namespace"})
+MODEL = "model"
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
@@ -44,6 +45,7 @@ class Layout(NamedTuple):
 
     Where frames are named ``at_run_time`` a description keeps its links and joints: nodes put the
     robot's name in front of frames, as robot_state_publisher does with its ``frame_prefix``.
+    ``models``: it renames those of a description as an exception, since its values name its own.
     """
 
     name: str
@@ -53,11 +55,12 @@ class Layout(NamedTuple):
     namespaced: bool
     about: str
     at_run_time: bool = False
+    models: bool = False
 
     @property
     def renames_models(self) -> bool:
         """Return whether the model has another name for each robot, given by it and not its spawner."""
-        return self.frames and not self.at_run_time
+        return self.models or (self.frames and not self.at_run_time)
 
 
 LAYOUTS = (
@@ -114,7 +117,9 @@ class Naming(NamedTuple):
 
 
 def leaves_world_systems(world_systems: str | None, robots: Sequence[str]) -> bool:
-    """Return whether a rewrite leaves the world's systems out: by default for several robots."""
+    """Return whether world systems are left to the world; raises UsageError.
+
+    By default those of several robots are: each robot would load them again."""
     if world_systems is None:
         return len(robots) > 1
     _refuse_unknown("world_systems", world_systems, WORLD_SYSTEMS)
@@ -203,7 +208,9 @@ def _active_separators(layout: Layout, topics: str, separators: dict[str, str]) 
 
 
 def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
-    """Return where the robot's name goes in a name of ``kind``; None where it is not renamed."""
+    """Return where the robot's name goes in a name of ``kind``; None where it is not renamed.
+
+    ``namespaced`` is true where a ROS namespace reaches the value."""
     if naming.own and (kind, text) in naming.own:
         return naming.own[kind, text]
     separator = naming.separators.get(kind)

@@ -105,6 +105,13 @@ def did_you_mean_one_of(word: str, choices: Iterable[str], alike: float = CHOICE
     return _hint(min(begun, key=len, default="") or nearest(word, words, alike))
 
 
+def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
+    """Return the message that ``name`` is unknown, with the nearest and the list of ``known``."""
+    known = sorted(known)
+    near = did_you_mean_one_of(name, [*known, *more])
+    return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
+
+
 def extensions(word: str, choices: Iterable[str]) -> list[str]:
     """Return the choices that are the word with more parts behind it."""
     return [it for it in choices if word and it.startswith((f"{word}_", f"{word}-"))]

@@ -167,7 +167,7 @@ def file_state(path: str) -> tuple[int, ...]:
 
 
 def kept_bytes(path: str, most: int) -> bytes:
-    """Return the first bytes of a large file, known by its time and size alone; raises OSError."""
+    """Return the first bytes of a large file, taken as unchanged by time and size; raises OSError."""
     file_state(path)
     with _noting_in(None), open(path, "rb") as file:
         return file.read(most)

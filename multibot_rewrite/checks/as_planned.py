@@ -12,13 +12,11 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.knowledge.records import MANAGER
-from multibot_rewrite.planning.ways import HOST, SPAWNER
 from multibot_rewrite.producers.launch.launched import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
 from multibot_rewrite.rules.system import (
     clocks,
-    localized,
     matching,
     names,
     planned_ends,
@@ -30,10 +28,22 @@ from multibot_rewrite.rules.system import (
     transforms,
 )
 from multibot_rewrite.rules.system.commands import command_to_nobody
+from multibot_rewrite.rules.system.unsent import is_for_driver
+from multibot_rewrite.rules.with_plan import subject_of
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.parameters import LIST_CONTROLLERS
-from multibot_rewrite.system.records import RUNS, SERVES, Environment, Place, System, doubts, surely
+from multibot_rewrite.system.records import (
+    HOST,
+    RUNS,
+    SERVES,
+    SPAWNER,
+    Environment,
+    Place,
+    System,
+    doubts,
+    surely,
+)
 
 # Parameters and descriptions may have them whatever the build does: types, trees of tf, and frames that
 # no parameter file names. Between robots they are the build's.
@@ -70,31 +80,26 @@ def not_as_planned(
     found = check_view(planned, seen._replace(environment=Environment()))
     if not found:
         return
-    by_plan = index(planned, whose_by_plan(planned))
+    by_plan, there = (index(it, whose_by_plan(planned)) for it in (planned, seen))
     open_, known = (
         open_names(by_plan, told),
-        lists_by_key((_identity(by_plan, it), it) for it in told),
+        lists_by_key((subject_of(by_plan, it), it) for it in told),
     )
     for it in found:
         level, place = _level(it, planned, seen, started), Place(it.file, it.line, it.column)
         if not it.file and it.node in running:
             place = running[it.node].place
-        if level and it.robot in real and is_for_driver(it, planned, started):
+        if level and it.robot in real and is_for_driver(there, it):
             level = NOTE
         if not level or any((it.code, name) in open_ for name in it.names):
             continue
         here = it._replace(file=place.file, line=place.line, column=place.column)
-        yield from (one._replace(level=level) for one in known.get(_identity(by_plan, it), [here]))
+        yield from (one._replace(level=level) for one in known.get(subject_of(by_plan, it), [here]))
 
 
 def is_of_sources(it: Finding) -> bool:
     """Return whether a finding's code is for a fault that one robot's sources may have."""
     return bool(it.robot) and it.code in (*_OF_SOURCES, *_MISSED)
-
-
-def _identity(by_plan: Index, it: Finding) -> tuple[str, ...]:
-    """Return the code of a finding, and its names without the robot's."""
-    return (it.code, *map(by_plan.plain, it.names)) if it.names else (it.code, str(it))
 
 
 def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
@@ -135,18 +140,6 @@ def _names_what_a_node_lacks(it: Finding, planned: System, seen: System, started
     lacks = [one.node for one in named if (one.node, one.kind, one.role, one.name) not in there]
     of_nodes = (it._replace(code=_LACKS, node=node) for node in lacks)
     return any(_is_to_be_started(one, planned, seen, started) for one in of_nodes)
-
-
-def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
-    """Return whether the driver of a real robot may mend a fault: it sends what is missing."""
-    # It places the link at which the tree is in pieces, which no started node's parameters name,
-    # and sends what a localizer waits for.
-    if it.code == localized.map_not_joined.code:
-        # With another name, a frame below the map is the wrong one.
-        return len(it.names) == 1
-    edges = (it for it in planned.edges if started & {*it.publishers})
-    named = {frame for edge in edges for frame in (edge.parent, edge.child)}
-    return it.code == tf_pieces.tf_tree_in_pieces.code and not (it.node or named >= {*it.names})
 
 
 def _is_read(seen: System) -> bool:

@@ -40,7 +40,6 @@ from multibot_rewrite.producers.launch.bridges import services_in
 from multibot_rewrite.rules.check import absences, contradictions
 from multibot_rewrite.rules.files.plugin_names import without_input
 from multibot_rewrite.rules.system.differing import differs_from_its_likes
-from multibot_rewrite.rules.system.localized import map_not_joined
 from multibot_rewrite.rules.system.states import (
     interface_claimed_twice,
     interface_commanded_twice,
@@ -48,7 +47,12 @@ from multibot_rewrite.rules.system.states import (
     open_claims,
 )
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
-from multibot_rewrite.rules.system.unsent import frame_not_sent, no_longer_sent, open_ends
+from multibot_rewrite.rules.system.unsent import (
+    frame_not_sent,
+    is_for_driver,
+    no_longer_sent,
+    open_ends,
+)
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.merging import joined
 from multibot_rewrite.system.ownership import ALONE, Whose, whose_by_plan
@@ -107,10 +111,11 @@ def left_open(
     old, new = index(before, ALONE), index(after._replace(ends=tuple(ends)), whose)
     in_sources, found = absences(old), absences(new)
     yield from _controller_faults(robot, before, after, texts)
-    # The frames that its files name and nothing of it sends; in a simulator no driver might.
-    known = before if robot.spec.simulator == REAL else before._replace(environment=Environment())
-    for it in _findings_of_rules((frame_not_sent,), known):
-        yield _at_file(it, robot, by_sources=True)
+    # What the drivers of a real robot, which no file names, send.
+    is_real = robot.spec.simulator == REAL
+    for it in _findings_of_rules((frame_not_sent,), before._replace(environment=Environment())):
+        level = NOTE if is_real and is_for_driver(old, it) else it.level
+        yield _at_file(it._replace(level=level), robot, by_sources=True)
     yield from _separate_trees(robot, after, in_sources, found)
     was_open = _ends_by_key(before, open_ends(old))
     lost = {
@@ -131,9 +136,7 @@ def left_open(
         )
         said = source if source and is_placed else it
         level = WARNING if said.level == ERROR else said.level
-        # Its drivers, which no file names, send what a localizer waits for.
-        real = robot.spec.simulator == REAL and it.code == map_not_joined.code
-        level = NOTE if real and len(it.names) == 1 else level
+        level = NOTE if is_real and is_for_driver(new, it) else level
         yield _at_file(said._replace(level=level), robot, by_sources=said is source)
     yield from (_at_file(no_longer_sent(it), robot) for it in lost.values())
 
@@ -222,7 +225,8 @@ def closed_plan(plan: FleetPlan) -> Fleet:
 
 
 def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
-    """Return what the bridges of these files carry, but those of robots that may be real."""
+    """Return what these bridges carry, but those of robots that may be real."""
+    # The shared one is left out if all robots may be real.
     maybe = plan.fleet.maybe_real
     real = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}
     left = {f"{it}/{BRIDGE_FILE}" for it in real}

@@ -1,18 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the plan of a fleet file or of robots, with what is wrong between and in them."""
+"""Makes the plan of a fleet file or of robots, with what is wrong between and in them, and what the
+nodes of one leave idle: without a lifecycle manager or a joint, by the rules of ``check-launch``."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.naming import Policy, make_naming
 from multibot_rewrite.checks.described import wrong_in_descriptions
-from multibot_rewrite.checks.left_idle import left_idle
-from multibot_rewrite.checks.meeting import robots_meet, shared_by_nothing
-from multibot_rewrite.checks.named_twice import declared_twice, other_manager
+from multibot_rewrite.checks.meeting import (
+    declared_twice,
+    other_manager,
+    robots_meet,
+    shared_by_nothing,
+)
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
@@ -31,10 +35,22 @@ from multibot_rewrite.fleet.robots.rewritten_robots import Jobs
 from multibot_rewrite.fleet.robots.robot_nodes import node_sources
 from multibot_rewrite.fleet.robots.simulators import is_said, is_simulated
 from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER
+from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.planning.bridged_topics import bridged_as, bridged_topics
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.way_checks import UNREACHABLE_NAME
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.rules.declaration import at
+from multibot_rewrite.rules.launch.started import (
+    bond_message,
+    is_managed,
+    keeps_no_bond,
+    moves_nothing,
+    no_joints,
+    not_listed,
+)
 
 
 def plan_fleet(
@@ -135,3 +151,48 @@ def _with_bridge_and_findings(
     own = topics if any(it.robot for it in topics) else ()
     gaps = tuple(shared_by_nothing(fleet))
     return fleet._replace(table=table, bridged=bridged_as(own), gaps=gaps)
+
+
+def left_idle(
+    nodes: Sequence[NodeFacts], given: Iterable[Run], known: Mapping[str, NodeFacts]
+) -> Iterator[Finding]:
+    """Yield what starts and does nothing, by the robot's own parameter files."""
+    own = {it.node: it for it in given}
+    yield from _unlisted(nodes, own)
+    yield from _without_bond(nodes, own)
+    running = {it.name for it in nodes if not it.when}
+    for it in own.values():
+        facts = known.get(it.fact.known)
+        if it.host_name and it.node in running and facts and moves_nothing(facts, it):
+            message = f"controller {it.node} gets no parameter that names a joint"
+            yield at(
+                no_joints, it.place, message, "write them into a section of its name", level=WARNING
+            )
+
+
+def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
+    """Report managed nodes that no lifecycle manager lists, if a file has the list."""
+    managers = [it for it in nodes if it.kind == LIFECYCLE_MANAGER]
+    place = next((own[it.name].place for it in managers if it.name in own), None)
+    listed = _listed_nodes(managers)
+    for it in nodes if place else ():
+        idle = is_managed(it.kind) and it.name not in listed and not (it.when or it.shared)
+        if idle and place:
+            message = f"{it.name} is in the list of no lifecycle manager"
+            yield at(not_listed, place, message, "add it to node_names", level=WARNING)
+
+
+def _without_bond(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
+    """Report nodes that keep no bond with the manager that lists them, if a file has the list."""
+    for manager in (it for it in nodes if it.kind == LIFECYCLE_MANAGER and it.name in own):
+        given, listed = own[manager.name], _listed_nodes([manager])
+        timeout = given.values.get("bond_timeout")
+        for it in nodes if timeout is None or timeout.value != 0 else ():
+            if it.name in listed and keeps_no_bond(it):
+                said = bond_message(manager.name, it.name)
+                yield at(not_listed, given.place, *said, level=WARNING)
+
+
+def _listed_nodes(managers: Sequence[NodeFacts]) -> Set[str]:
+    """Return the nodes whose services managers call."""
+    return {end.name.strip("/").partition("/")[0] for it in managers for end in it.endpoints}

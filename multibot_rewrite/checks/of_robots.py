@@ -12,7 +12,7 @@ from multibot_rewrite.base.conventions import CLOCK, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.checks.lacking import lacking, without_camera
-from multibot_rewrite.checks.named_twice import named_twice
+from multibot_rewrite.checks.meeting import named_twice
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.readback.meeting import OPENED

@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.checks.as_planned import is_for_driver, not_as_planned, open_names
+from multibot_rewrite.checks.as_planned import not_as_planned, open_names
 from multibot_rewrite.checks.as_printed import not_as_commanded, not_as_printed
 from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.checks.lacking import LACKING
@@ -126,12 +126,14 @@ def _read_launch(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Find
             for it in _launch_errors(start, by_plan, codes, elsewhere)
             # Robots may share a topic which the fleet file shares.
             if it.code not in (COMMAND, DATA) or not {*it.names} <= shared
-            if it.robot not in real or not is_for_driver(it, made.planned, started)
         ]
         alone = _not_open(alone, made)
         # What is an error without the plan is one line, of that level.
         errors = {(it.code, it.robot) for it in alone if it.robot}
         wrong = [it for it in wrong if (it.code, it.robot) not in errors] + alone
+        # What two robots both have by their descriptions is one line, with what to do.
+        both = {it.names for it in plan.fleet.table.problems if it.level == ERROR and it.names}
+        wrong = [it for it in wrong if it.names not in both]
         if any(it.code == NO_MANAGER.code for it in wrong):
             remedy = _manager_hint(plan)
             wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]

@@ -28,7 +28,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.planning.of_runs import ends_of, lookups_of, with_names
-from multibot_rewrite.planning.plan import tf_topic
+from multibot_rewrite.planning.planned_system import tf_topic
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.table import plugin_nodes
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, sent_by, tree_joints

@@ -26,8 +26,11 @@ from multibot_rewrite.planning.plan import is_fleet, read_plan, robot_words
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
+from multibot_rewrite.rules.with_plan import subject_of
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import by_domain, side_by_side
+from multibot_rewrite.system.index import index
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import System, answering, doubts
 
 
@@ -172,8 +175,10 @@ def conclude(
     ``compared`` are those about the graph and its plan, ``before`` those from before there was a
     graph."""
     found = chosen(options, compared)
-    gaps = _shown_gaps(options, plan)
+    gaps, whose = _shown_gaps(options, plan), index(plan, whose_by_plan(plan))
     of_graph = [it for it in (*before, *found) if it not in gaps]
+    known = {(subject_of(whose, it), it.level) for it in of_graph}
+    gaps = [it for it in gaps if (subject_of(whose, it), it.level) not in known]
     findings = [*of_graph, *gaps]
     held = coverage(plan, graph)
     given = vars(options)

@@ -106,7 +106,7 @@ def clear_leftovers(folder: str) -> None:
 
 
 def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note: str) -> None:
-    """Make a new folder beside the old one and exchange them; raises if it is impossible."""
+    """Make a new folder next to the old one and exchange them; raises if it is impossible."""
     above, name = os.path.split(folder)
     if os.path.ismount(folder) or (
         os.path.commonpath([os.path.realpath(os.getcwd()), folder]) == folder

@@ -10,16 +10,12 @@ from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_chosen_here
 from multibot_rewrite.cli import fleet
-from multibot_rewrite.cli.check_launch import plan_beside
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.usage import given_options, robots
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
-from multibot_rewrite.library.systems import launched_by
-from multibot_rewrite.live.diagnose import diagnose
-from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
 from multibot_rewrite.planning.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.planning.enclaves import to_policy
 from multibot_rewrite.planning.plan import to_yaml
@@ -31,7 +27,7 @@ from multibot_rewrite.system.records import System, doubts
 
 PLAN, POLICY = "plan", "sros2"
 # How a plan calls a robot without a name; its frames are those of its description.
-ALONE, LAYOUT_ALONE = NAMELESS.name, "tf-per-robot"
+ALONE, LAYOUT_ALONE = "robot1", "tf-per-robot"
 # What a plan of a description has, and that of a launch file has not.
 _OF_ROBOTS = ("robots", "count", "node_set", "launch", "layout", "affix", "topics", "separator")
 NOT_OF_LAUNCH = {it: f"--{it.replace('_', '-')}" for it in (*_OF_ROBOTS, "shared")}
@@ -80,6 +76,11 @@ def _write(options: argparse.Namespace, plan: System) -> None:
 
 def _plan_launch(options: argparse.Namespace) -> int:
     """Write the plan of what a launch file starts; returns the exit code."""
+    from multibot_rewrite.cli.check_launch import plan_beside  # a fleet needs none of it
+    from multibot_rewrite.library.systems import launched_by
+    from multibot_rewrite.live.diagnose import diagnose
+    from multibot_rewrite.live.seen_plan import seen_plan
+
     given = given_options(options, NOT_OF_LAUNCH)
     if given or options.output_kind != PLAN:
         what = given[0] if given else "--output-kind"

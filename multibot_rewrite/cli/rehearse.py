@@ -27,11 +27,10 @@ from multibot_rewrite.live.rehearsal import (
     without_doubles,
 )
 from multibot_rewrite.planning.transforms import with_odometry
-from multibot_rewrite.planning.ways import WAYS
 from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.system.domains import by_domain, domain_of, side_by_side
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import WAYS, System
 
 # Where a plan is of one domain, its number is none of a system.
 ONE = -1

@@ -93,7 +93,7 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     try:
         stripped = undo(options)
     except RewriteRefused as error:
-        raise with_missing_options(error, options, undo, robot) from None
+        raise with_missing_options(error, options, undo, robot, read.data) from None
     check_unread(options, [robot], (*read.read, *beside))
     deliver(options, [(robot, read.data, stripped)], 1)
     tell(options, f"{robot} taken out, verified by rewriting again")

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import product
 from math import inf
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import RewriteRefused
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, PREFIX
 
@@ -23,17 +24,21 @@ _TRIED: dict[str, tuple[Any, ...]] = {
 }
 
 
+_LINK = lazy_compile(rb"""<link\b[^<>]*?\sname=["']([^"'<>]*)["']""")
 Undo = Callable[[argparse.Namespace], bytes]
 
 
 def with_missing_options(
-    error: RewriteRefused, options: argparse.Namespace, undo: Undo, robot: str
+    error: RewriteRefused, options: argparse.Namespace, undo: Undo, robot: str, data: bytes
 ) -> RewriteRefused:
-    """Return the error with the options that are missing as its hint, if some make ``undo`` succeed.
+    """Return the error with the options that are missing as its hint, if some make ``undo`` of the
+    ``data`` succeed: with links shared that are without the robot's name, if others have it.
 
     What ``undo`` gives is verified: rewritten with these options it is the file again.
     """
-    words = _best_options(options, undo, robot)[1]
+    links = [it.decode("utf-8", "replace") for it in _LINK.findall(data)]
+    bare = [it for it in links if robot not in it]
+    words = _best_options(options, undo, robot, bare if len(bare) < len(links) else [])[1]
     hint = f"the file was made with {words}: give that, too"
     return (
         RewriteRefused(tuple(it._replace(hint=hint) for it in error.findings)) if words else error
@@ -50,10 +55,12 @@ def more_to_undo(stripped: bytes, options: argparse.Namespace, undo: Undo, robot
     return words if left < stripped.count(robot.encode()) else ""
 
 
-def _best_options(options: argparse.Namespace, undo: Undo, robot: str) -> tuple[float, str]:
+def _best_options(
+    options: argparse.Namespace, undo: Undo, robot: str, shared: Sequence[str] = ()
+) -> tuple[float, str]:
     """Return how often the name is left after the best added options, and the fewest such options."""
     best: tuple[float, str] = inf, ""
-    for more in _missing_options(options):
+    for more in _missing_options(options, [*shared]):
         try:
             made = undo(argparse.Namespace(**{**vars(options), **more}))
         except MultibotError:
@@ -63,10 +70,11 @@ def _best_options(options: argparse.Namespace, undo: Undo, robot: str) -> tuple[
     return best
 
 
-def _missing_options(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
+def _missing_options(options: argparse.Namespace, shared: list[str]) -> Iterator[dict[str, Any]]:
     """Yield combinations of missing options, the smallest ones first."""
     given = vars(options)
-    open_ = {name: values for name, values in _TRIED.items() if not given[name]}
+    tried = {**_TRIED, "shared": ([], shared)} if shared else _TRIED
+    open_ = {name: values for name, values in tried.items() if not given[name]}
     every = (dict(zip(open_, values, strict=True)) for values in product(*open_.values()))
     named = [{name: value for name, value in it.items() if value} for it in every]
     yield from sorted(filter(None, named), key=len)

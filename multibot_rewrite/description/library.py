@@ -287,7 +287,7 @@ def explain(
     def explaining(whole: Source) -> tuple[Document, OnLine]:
         job = read_job(whole, *given, release=release)
         document = read_document(job.data, job.file)
-        inventory = collect(document, job.tree, job.urdf_declarations, naming.read_as)
+        inventory = collect(document, job.tree, job.urdf_declarations, job.naming.read_as)
         pipeline.check_urdf(inventory, job.urdf_declarations)
         return document, partial(explain_line, inventory, job.naming, job.tree, robot)
 
@@ -327,13 +327,13 @@ def strip(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     before, release = b"", release_chosen_here(distro)
+    job = read_job(source, naming, urdf, None, definitions, file, (), trust, release=release)
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
         of = read_job(
             made, naming, beside, xacro_args, definitions, "", [robot], trust, release=release
         )
-        naming, before = of.naming, b"" if beside else of.data
-    job = read_job(source, naming, urdf, None, definitions, file, (), trust, release=release)
+        job, before = job._replace(naming=of.naming), b"" if beside else of.data
     beside_urdf = job.urdf_declarations
-    made = pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
+    made = pipeline.strip(job.data, job.file, robot, job.naming, job.tree, beside_urdf, before)
     return put_back(made, job.file, job.tree)

@@ -17,7 +17,8 @@ from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interface
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models
 from multibot_rewrite.planning.domain_bridge import with_bridges
-from multibot_rewrite.planning.plan import expect, named_frames, vacuous, words_of
+from multibot_rewrite.planning.plan import vacuous, words_of
+from multibot_rewrite.planning.planned_system import expect, named_frames
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table, joined, plugin_nodes
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of

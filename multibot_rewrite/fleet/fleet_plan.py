@@ -21,7 +21,6 @@ from multibot_rewrite.fleet.launch.launched_files import (
 from multibot_rewrite.fleet.launch.launched_simulator import with_launched_world
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
-from multibot_rewrite.fleet.robots.joined_robots import with_joined
 from multibot_rewrite.fleet.robots.rewritten_robots import (
     Jobs,
     RewrittenRobot,
@@ -39,6 +38,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
 from multibot_rewrite.fleet.robots.simulators import (
     may_be_real,
     note,
+    with_model,
     without_world_systems,
 )
 from multibot_rewrite.planning.plan import words_of
@@ -88,7 +88,11 @@ def make_plan(
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown node
     set."""
-    file, joined = with_joined(file, trust)
+    joined: Mapping[str, Sequence[Finding]] = {}
+    if any(it.parts for it in file.robots):
+        from multibot_rewrite.fleet.robots.joined_robots import with_joined  # few are joined
+
+        file, joined = with_joined(file, trust)
     file, notes = with_launched_files(_with_trust(with_shape(file)) if trust else with_shape(file))
     file = with_launched_world(with_one_map(with_bridge_namespaces(file)))
     with gc_paused():
@@ -98,7 +102,9 @@ def make_plan(
             file, said = with_own_arguments(file, naming, trust)
         read = jobs or read_jobs(file.robots, naming, file.definitions, trust, file.distro)
         robots = [
-            placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
+            with_model(
+                placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
+            )
             for it in without_world_systems(with_own_ports(rewrite_robots(file.robots, read)))
             for own in [(*said.get(it.spec.name, ()), *joined.get(it.spec.name, ()))]
         ]

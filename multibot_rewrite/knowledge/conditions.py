@@ -47,7 +47,7 @@ def parse_condition(text: str) -> tuple[tuple[Condition, ...], ...]:
 
 
 def joined(text: str, other: str) -> str:
-    """Return both conditions as one."""
+    """Return the condition that holds where both hold."""
     return OR.join(f"{it}{AND}{other}" for it in text.split(OR)) if text else other
 
 
@@ -187,5 +187,5 @@ def _spellings(given: object) -> set[str]:
 
 
 def word_of(value: object) -> str:
-    """Return a value as a YAML file has it."""
+    """Return a parameter's value as the text that a YAML file has for it."""
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -7,7 +7,6 @@ Source: ros2_control ``controller_manager.cpp`` (``determine_controller_node_opt
 from typing import NamedTuple
 
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.knowledge.records import MANAGER
 
 
 class ControllerWay(NamedTuple):
@@ -41,8 +40,3 @@ CONTROLLER_WAYS = (
 def controller_way(release: str) -> ControllerWay:
     """Return how controllers get rules in a release."""
     return next(it for it in CONTROLLER_WAYS if has_release(it.releases, release))
-
-
-def names_its_process(kind: str, release: str) -> bool:
-    """Return whether a rule ``__node`` for this node renames its whole process (ros2_control#1684)."""
-    return kind == MANAGER and controller_way(release).process_wide

@@ -45,12 +45,12 @@ class Declared(NamedTuple):
 
     @property
     def checks(self) -> tuple[tuple[str, str], ...]:
-        """Each of its checks with its arguments."""
+        """The names of its checks, each with the text of its arguments."""
         return checks_in(self.bounds)
 
 
 def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
-    """Return each check in a text with its arguments."""
+    """Return the name of each check in a text, with the text of its arguments."""
     if ")" not in bounds:
         return ()
     checks = (it.partition("(") for it in _BETWEEN_CHECKS.split(bounds) if it.endswith(")"))
@@ -59,6 +59,7 @@ def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
 
 @lru_cache(maxsize=8192)
 def _fixed_parts(path: str) -> list[str]:
+    """Return the parts of a path between its words in brackets."""
     return _WILD.split(path)
 
 
@@ -155,7 +156,7 @@ class Base(NamedTuple):
 
 @cache
 def plugin_bases() -> Mapping[str, Base]:
-    """Return every base by its name."""
+    """Return the plugin classes known for each base class."""
     _, *parts = own_text(__file__, "plugin_classes.schema").split("\n[")
     return {part[: part.index("]")]: _base_of(part) for part in parts}
 
@@ -168,6 +169,7 @@ def _base_of(section: str) -> Base:
 
 
 def _releases_of(word: str) -> str:
+    """Return the release words in a column; empty for another text."""
     return word.removeprefix(RELEASES) if word.startswith(RELEASES) else ""
 
 

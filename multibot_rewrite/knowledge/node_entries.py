@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
 from multibot_rewrite.knowledge.conditions import CHOSEN, OPEN_KIND, words_in
 from multibot_rewrite.knowledge.records import (
@@ -33,7 +34,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     table,
     table_of,
     text_and_words,
-    unknown,
     variants,
     word,
     word_of,
@@ -130,7 +130,7 @@ def _read_param(path: str, item: YamlItem, absolute: str) -> Param:
 
 
 def read_guesses(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield kinds with the last words of paths that suggest them."""
+    """Yield kinds of parameters, with the last words of paths that suggest them."""
     given = table_of(keys, "guesses")
     for kind, item in given.items():
         yield one_of(item, "kind", kind, KINDS), words_of(given, kind)

@@ -7,6 +7,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.base.releases import share_release
 from multibot_rewrite.knowledge.node_entries import (
     GRAPH_KEYS,
@@ -32,7 +33,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     releases_of,
     table,
     table_of,
-    unknown,
     word,
     word_of,
     words_of,

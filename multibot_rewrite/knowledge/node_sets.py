@@ -53,6 +53,7 @@ def with_file(path: str) -> NodeLibrary:
 # A command asks for what the same file says many times.
 @lru_cache(maxsize=4)
 def _extended_for_release(text: str, path: str, release: str) -> NodeLibrary:
+    """Return the nodes of a release, with those that the text of a file adds."""
     return in_release(_extended_library(text, path), release)
 
 
@@ -79,6 +80,7 @@ def is_apart(node: str, release: str) -> bool:
 
 
 def _ends_in(node: str, with_: str) -> bool:
+    """Return whether the last segments of a node's name are another name."""
     return bool(with_) and f"/{node}".endswith(f"/{with_}")
 
 
@@ -169,6 +171,7 @@ def _endpoints_in_release(
 
 
 def _endpoint_in_release(it: Endpoint, package: str, release: str) -> Endpoint:
+    """Return an endpoint with the condition, types and place that it has in a release."""
     if not (it.releases or it.above or it.types):
         return it
     above = it.above if it.above and has_release(it.above, release) else ""

@@ -30,7 +30,7 @@ class Package(NamedTuple):
 
 @cache
 def packages() -> Mapping[str, Package]:
-    """Return every package of the table."""
+    """Return known packages by name, each with its repository and versions."""
     found: dict[str, Package] = {}
     rows: dict[str, Versions] = {}
     for line in own_text(__file__, "packages.schema").splitlines():
@@ -45,7 +45,7 @@ def packages() -> Mapping[str, Package]:
 
 
 def number(version: str) -> tuple[int, ...]:
-    """Return a version in a form that can be compared."""
+    """Return a version as numbers that can be compared."""
     return tuple(int(it) for it in version.split(".") if it.isdecimal())
 
 
@@ -56,6 +56,7 @@ def by_version(words: str) -> str:
 
 
 def _terms_by_version(term: str) -> Iterator[str]:
+    """Yield the release words that one ``PACKAGE VERSION+`` stands for."""
     name, _, since = term.removesuffix("+").partition(" ")
     if name in RELEASES or not since or name not in packages():
         yield term

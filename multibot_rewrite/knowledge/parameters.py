@@ -118,6 +118,7 @@ def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Ite
 
 
 def _tree_of(params: Iterable[Param]) -> Branch:
+    """Return the parameters as a tree by the segments of their paths."""
     root = Branch({}, {}, {}, [])
     for param in params:
         branch = root

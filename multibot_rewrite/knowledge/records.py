@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.system.records import NO_ORIGIN, Origin
 
 MANAGER, MOVE_GROUP, TWIST_MUX = "controller_manager", "move_group", "twist_mux"
@@ -226,3 +227,8 @@ class NodeFacts(NamedTuple):
 
 # What is known of a node that nobody knows.
 UNKNOWN = NodeFacts("", "", (), is_known=False)
+
+
+def names_its_process(kind: str, release: str) -> bool:
+    """Return whether a rule ``__node`` for this node renames its whole process (ros2_control#1684)."""
+    return kind == MANAGER and controller_way(release).process_wide

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """YAML with the file and line of every value, for errors; and the keys that any fact may have."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias, TypeVar
 
 from multibot_rewrite.base.bounded import compose_own_yaml, compose_yaml
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.nearest import unknown
 
 if TYPE_CHECKING:
     import yaml
@@ -79,7 +79,7 @@ def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str
 
 
 def word(item: YamlItem, what: str) -> str:
-    """Return a text; it may be empty."""
+    """Return the text of an item, which may be empty; raises UsageError for another value."""
     if not isinstance(item.value, str):
         wrong(item, f"{what} is {_type_in_words(item)}; write a text, in quotes if needed")
     return item.value
@@ -125,7 +125,7 @@ def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> 
 
 
 def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
-    """Return what a word stands for; an unknown one is an error."""
+    """Return what ``known`` has for the text of an item; raises UsageError for another text."""
     name = word(item, what)
     if name not in known:
         wrong(item, unknown(what, name, known))
@@ -133,7 +133,7 @@ def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
 
 
 def one_of(item: YamlItem, what: str, value: str, allowed: Sequence[str]) -> str:
-    """Return the value, which has to be one of those allowed."""
+    """Return the value; raises UsageError for one that is not allowed."""
     if value not in allowed:
         wrong(item, unknown(what, value, allowed))
     return value
@@ -142,13 +142,6 @@ def one_of(item: YamlItem, what: str, value: str, allowed: Sequence[str]) -> str
 def wrong(item: YamlItem, message: str) -> NoReturn:
     """Raise UsageError at the place of ``item``."""
     raise UsageError(f"{item.where}: {message}")
-
-
-def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
-    """Return the message that ``name`` is unknown, with the nearest and the list of ``known``."""
-    known = sorted(known)
-    near = did_you_mean_one_of(name, [*known, *more])
-    return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
 
 
 def _type_in_words(item: YamlItem) -> str:
@@ -193,12 +186,12 @@ def source_of(keys: Mapping[str, YamlItem]) -> tuple[str, ...]:
 
 
 def variants(item: YamlItem) -> tuple[YamlItem, ...]:
-    """Return a fact, or a list of what it is in one release and another, as a list."""
+    """Return the variants of a fact in different releases as a list, also a single one."""
     return item.value if isinstance(item.value, tuple) else (item,)
 
 
 def check_apart(item: YamlItem, what: str, words: Sequence[str]) -> None:
-    """Check that a fact has a variant, and no two of them hold in one release."""
+    """Raise UsageError unless a fact has variants, no two of which hold in one release."""
     if not words:
         wrong(item, f"{what} is an empty list; write what it is")
     for release in RELEASES if len(words) > 1 else ():

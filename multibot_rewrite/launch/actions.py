@@ -8,9 +8,9 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.outputs import spawn as spawning
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
     ROBOTS,

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.library.loaded_fleet import LoadedFleet, load_fleet
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
@@ -59,7 +59,7 @@ def entered(context: Context, group: Here) -> None:
 
 
 def here(context: Context) -> Here:
-    """Return fleet and robot of the enclosing group."""
+    """Return the fleet and the robot of the enclosing group; None outside of one."""
     known = context.get_locals_as_dict()
     return known.get(FLEET), known.get(ROBOT)
 
@@ -320,6 +320,7 @@ def as_value(value: Any) -> Any:
 
 
 def _value_of_words(context: Context, words: Sequence[str], of: RobotRef) -> str:
+    """Return the value of ``$(multibot ...)`` with these words."""
     options = [it for it in words if it.partition(":=")[0] in RobotRef._fields and ":=" in it]
     of = of._replace(**dict(it.split(":=", 1) for it in options))
     word, name = (*(it for it in words if it not in options), "", "")[:2]

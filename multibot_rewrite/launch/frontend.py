@@ -133,6 +133,7 @@ class _Programless:
 
 
 def _own_attributes(entity: Any, parser: Any) -> dict[str, Any]:
+    """Return the options of an element that launch_ros does not read."""
     name = parser.parse_substitution(entity.get_attr("node"))
     describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
     texts = _texts(entity, parser, "files", "robot", "fleet", SIM_TIME)

@@ -31,6 +31,8 @@ def component(base: Any, make: Callable[[Context], Options], first: Mapping[str,
 
 @cache
 def _action_class(base: Any) -> Any:
+    """Return a class of actions that make themselves again when they run."""
+
     class OfRobot(base):  # type: ignore[misc]
         """An action of launch_ros for a robot."""
 
@@ -57,6 +59,8 @@ def _action_class(base: Any) -> Any:
 
 @cache
 def _component_class(base: Any) -> Any:
+    """Return a class of components that make themselves again when they are loaded."""
+
     class ComponentOfRobot(base):  # type: ignore[misc]
         """A component for a robot."""
 
@@ -80,6 +84,8 @@ def _component_class(base: Any) -> Any:
 
 @cache
 def _made_text_class() -> Any:
+    """Return a class of substitutions whose text a function makes."""
+
     class Made(of_launch().Substitution):  # type: ignore[misc]
         """A text that a function makes."""
 

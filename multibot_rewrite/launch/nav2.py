@@ -16,11 +16,11 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
 from multibot_rewrite.fleet.outputs.rviz_outputs import robot_windows, window_start
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER as MANAGER, NAV2
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch.actions import each_robot, node_class, own_file, place
 from multibot_rewrite.launch.context import (
     SIM_TIME,
@@ -81,6 +81,7 @@ def _is_on(context: Context, argument: str) -> bool:
 
 
 def _starts(robot: LoadedRobot, context: Context) -> list[Action]:
+    """Return what a robot starts: its nodes of Nav2, their state publisher, bridges and relays."""
     names = robot.table
     # Other nodes that its files have sections for may run, too: the node sets say which do.
     known = nodes_of_nav2(it for it in robot.node_set if it in names.nodes)

@@ -17,6 +17,7 @@ from typing import Any
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.checks.build import Outputs, make_outputs
 from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.description.sources.read import read_file
@@ -32,7 +33,6 @@ from multibot_rewrite.fleet.robots.loaded_robot import KeptFiles, LoadedRobot
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import Jobs
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.related_files.params.rcl_parameters import check_values
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 

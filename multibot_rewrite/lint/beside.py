@@ -34,7 +34,10 @@ _DECLARED = frozenset(KINDS)
 
 
 def robots_of(file: str, settings: Settings) -> Robots:
-    """Return the named description, or those of the file's package, next to it, or linted with it."""
+    """Return the description that was named, otherwise those that the file may belong to.
+
+    These are those of its package, otherwise of description packages next to it, otherwise those
+    that are linted with it."""
     own = package_of(file)
     folder = own[1] if own else os.path.dirname(os.path.abspath(file))
     paths = [settings.urdf] if settings.urdf else _robot_descriptions(folder)

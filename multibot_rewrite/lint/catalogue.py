@@ -15,7 +15,7 @@ HOMES = {
     "related_files.rviz": "window_checks",
     "description.checks": "references robots",
     "description.steps": "plan",
-    "checks": "across_domains lacking meeting named_twice of_robots",
+    "checks": "across_domains lacking meeting of_robots",
     "fleet.file": "simulator_switch",
     "fleet.launch": "launched_files",
     "fleet.outputs": "bridge_outputs controller_files moveit_parameters params_style rviz_outputs"

@@ -48,7 +48,7 @@ def lint_file(path: str, settings: Settings) -> list[Finding]:
 def lint_data(
     path: str, data: bytes, settings: Settings, wanted: Callable[[Rule], bool] = bool
 ) -> list[Finding]:
-    """Return what the ``wanted`` rules find in a text; xacro resolves includes from its ``path``."""
+    """Return what the ``wanted`` rules find in a text; xacro resolves includes from ``path``."""
     return _lint_source(path, lambda: data, settings, wanted)
 
 
@@ -94,7 +94,7 @@ def _add_findings(
     found: list[Finding],
     sources: dict[str, bytes],
 ) -> None:
-    """Add findings and read files; the subjects are released before the garbage collector is back."""
+    """Add findings and the files that were read; it releases the subjects before it returns."""
     for subject in read_subjects(path, data, settings):
         if isinstance(subject, Failed):
             it = failure(path, subject.error, settings)
@@ -147,7 +147,9 @@ def _raise_too_long(*_: object) -> NoReturn:
 def unsuppressed(
     findings: Sequence[Finding], sources: Mapping[str, bytes], settings: Settings
 ) -> list[Finding]:
-    """Return the findings that nothing suppresses, and those about comments of the first source."""
+    """Return the findings that no comment or setting suppresses, and those about comments.
+
+    The first of ``sources`` is the file that is linted, the others are those it includes."""
     reported = [it for it in findings if not is_silent(settings, file_of(it), it.code)]
     if not any(MARK in source for source in sources.values()):
         return reported

@@ -108,7 +108,6 @@ def _is_same(one: Meaning, other: Meaning) -> bool:
 
 
 def _meaning(element: _Element) -> Meaning:
-    """Return what an element means, with all below it."""
     tag, pose = str(element.tag), poses.pose_of(element) if element.tag == "origin" else None
     unread = _UNREAD.get(tag, ()) if tag != "origin" or pose else ()
     attributes = {str(key): str(it) for key, it in element.items() if key not in unread}

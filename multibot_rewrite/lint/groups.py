@@ -11,7 +11,9 @@ from multibot_rewrite.rules.settings import Settings
 
 
 class Group(NamedTuple):
-    """Rules by the beginning of their codes, in a module; a lint of a URDF loads only ``of_urdf``."""
+    """The rules whose codes begin with ``start``, in a module or package of ``rules``.
+
+    Some are ``of_urdf``, or all are for other files: then a lint of a URDF does not load them."""
 
     start: str
     module: str

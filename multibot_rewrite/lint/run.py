@@ -73,7 +73,7 @@ def _key(path: str, settings: Settings) -> str:
 
 
 def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) -> Settings:
-    """Return the settings with what the files include, the URDFs of SRDFs, and xacro arguments."""
+    """Return the settings for one of several files: includes, URDFs of SRDFs, xacro arguments."""
     if len(paths) == 1 and not paths[0].endswith(".xacro"):
         return settings
     from multibot_rewrite.lint.cache.cache import among_from, among_written

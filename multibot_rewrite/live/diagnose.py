@@ -63,7 +63,10 @@ class Diagnosis(NamedTuple):
 def diagnose(
     graph: System, messages: Mapping[str, int] = NO_COUNTS, names: System | None = None
 ) -> Diagnosis:
-    """Return what a graph is by itself, of the robots of the plan ``names`` if there is one."""
+    """Return what a graph is by itself, and the findings about it.
+
+    ``messages`` counts those of each topic, if they were counted; the plan ``names`` says whose
+    names are."""
     robots = guess_robots(surely(graph))
     if names:
         robots = tuple(GuessedRobot(it.name, f"/{it.space}") for it in names.robots)

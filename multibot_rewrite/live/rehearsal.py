@@ -70,7 +70,10 @@ def played(
 
 
 def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> Iterator[Stub]:
-    """Yield the stub nodes; ``edges`` are by robot and node, ``left_out`` ways pass no rules."""
+    """Yield the stub nodes with their edges, which are given by robot and node.
+
+    Rules at one of the ways ``left_out`` are not given; without any a node gets only its namespace
+    and its name."""
     types = {name: end.type for _, end, name in table.ends if end.type}
     # What a node does that nobody knows is not played.
     names = lists_by_key(
@@ -142,7 +145,10 @@ def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoi
 
 
 def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
-    """Return the stub nodes by process: one for each robot, another for a topic's second type."""
+    """Return the stub nodes by process: one for each robot, but no more than PROCESSES.
+
+    A participant of DDS refuses a topic under a second type: a stub with another type is in another
+    process."""
     processes: dict[int, list[Stub]] = defaultdict(list)
     process_of: dict[str, int] = {}
     types: dict[tuple[int, str, str], str] = {}
@@ -275,7 +281,10 @@ def isolated_environments(domain: int | None, count: int) -> list[dict[str, str]
 def graph_of_stubs(
     nodes: Iterable[Stub], environ: Mapping[str, str], seconds: float
 ) -> tuple[System, dict[str, str]]:
-    """Return the graph of the stub nodes, and which types are replaced by which; raises Unusable."""
+    """Return the graph of the stub nodes, and which types are replaced by which.
+
+    A snapshot that lacks what the nodes announce is taken again. Raises Unusable where the nodes do
+    not start or the graph is not read."""
     request = Request(seconds, substitutes=True)
     with _started(nodes, environ) as started:
         for _ in range(LOOKS):

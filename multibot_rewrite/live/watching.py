@@ -48,7 +48,7 @@ def verdict_words(
     planned: bool = True,
     gaps: Sequence[Finding] = (),
 ) -> str:
-    """Return the verdict in words, which say no more than was seen; ``gaps``: findings of the plan."""
+    """Return the verdict in words, which say no more than was seen; ``gaps``: the plan's findings."""
     is_open = any(it.level != NOTE for it in gaps)
     words = _WORDS.get((verdict, planned)) or _WORDS[verdict, True]
     if verdict == Verdict.PLANNED and (levels := {it.level for it in findings}):

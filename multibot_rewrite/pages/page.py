@@ -58,7 +58,7 @@ def to_html(
     robots: Framed | None = None,
 ) -> bytes:
     """Return the page, with ``snippets`` of files by ``file:line``, and ``robots`` below its head."""
-    css, js = _asset("page.css"), _asset("page.js") + _asset("zoom.js")
+    css, js = _asset_text("page.css"), _asset_text("page.js") + _asset_text("zoom.js")
     # Nothing but what is in the page.
     style, script, images, frame = source_hash(css), source_hash(js), "", ""
     if robots is not None:
@@ -97,8 +97,7 @@ def to_html(
 
 
 @cache
-def _asset(name: str) -> str:
-    """Return the text of a file of this package."""
+def _asset_text(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 

@@ -115,7 +115,10 @@ def ids_in(section: PageSection, ids: Ids) -> set[str]:
 def link_to(
     finding: Finding, targets: Iterable[str], sections: Mapping[str, tuple[str, set[str]]]
 ) -> str:
-    """Return the link to a finding about ``targets``; ``sections``: section and ids, by robot."""
+    """Return the link to a finding: in its robot's section, or in another one.
+
+    ``targets`` are the ids of what it is about. ``sections`` has by robot the id of its section and
+    the ids in it."""
     own = sections.get(finding.robot) or sections[""]
     for target in targets:
         if target.startswith("f"):

@@ -66,7 +66,9 @@ class DrawnEdge(NamedTuple):
 
 
 class DrawnNode(NamedTuple):
-    """A node, or with ``is_robot`` a whole robot; ``is_tool``: neither planned nor in a finding."""
+    """A node; with ``is_robot`` it stands for a whole robot, in the group of what is shared.
+
+    ``is_tool`` nodes are neither planned nor in a finding."""
 
     name: str
     robot: str
@@ -96,7 +98,10 @@ class DrawnGroup(NamedTuple):
 
 
 class Crossing(NamedTuple):
-    """A node of robot ``source`` (else ``node``) uses ``names`` of robot ``target``, or of none."""
+    """What connects two groups: a node of robot ``source`` uses ``names`` of robot ``target``.
+
+    Without ``source`` the node is ``node``, of no robot; without ``target`` the names are of no
+    robot."""
 
     source: str
     node: str
@@ -119,7 +124,9 @@ class FindingRow(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """All that is drawn; of each group in ``one_of`` one node should run, ``running`` do."""
+    """All that is drawn; ``rows`` are the ``findings``, those of several robots as one.
+
+    Of each group of nodes in ``one_of`` one should run; those that do are ``running``."""
 
     outcome: Outcome
     layout: str
@@ -222,7 +229,7 @@ def _drawn_edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge
 
 
 def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) -> bool:
-    """Return whether the plan has an endpoint, as itself or as parts of an action, or of a helper."""
+    """Return whether the plan has an endpoint of the graph, by itself or in another form."""
     node, kind, role, name = key
     if key in plan.by_key or node in plan.own[""] or (role, name) in bridged:
         return True

@@ -40,7 +40,7 @@ def merged(targets: Iterable[Targets]) -> Targets:
 
 
 class States(NamedTuple):
-    """States of ends and nodes, codes of frames, and all ``names`` that findings are about."""
+    """States by (node, name) and by node, codes by frame; ``names``: all that findings are about."""
 
     endpoints: Mapping[tuple[str, str], str]
     nodes: Mapping[str, str]
@@ -144,7 +144,9 @@ class FrameRow(NamedTuple):
 
 
 class FrameTree(NamedTuple):
-    """One tree on ``topic`` and its tf_static, or what of ``robot`` was not ``received`` there."""
+    """One tree on ``topic`` and its tf_static.
+
+    Without ``received`` it has the frames of ``robot`` that are declared and were not received."""
 
     topic: str
     robot: str

@@ -115,7 +115,7 @@ def _boxes_svg(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -
             f'<g class="n {node.state}{foreign}"{own}>'
             f'<rect x="{x}" y="{y - NODE_HIGH / 2:g}" width="{wide}" height="{NODE_HIGH}" rx="5"/>'
             f'<text x="{x + 9}" y="{y + 4:g}">{label}</text>'
-            f"{tooltip(node.name, _meaning(node.state))}</g>"
+            f"{tooltip(node.name, _state_meaning(node.state))}</g>"
         )
     for name, y in place.names:
         yield _name_box(name, group.robot, y, _id_attributes(ids.names.get(name.name), ids, prefix))
@@ -140,7 +140,7 @@ def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     )
     shape = "2" if badge else f"{NAME_HIGH / 2:g}"
     end = f'<text class="badge" x="{x + wide - 7}" y="{y + 4:g}">{badge}</text>' if badge else ""
-    about = (f"{name.kind} {name.name}", " and ".join(name.types), _meaning(name.state))
+    about = (f"{name.kind} {name.name}", " and ".join(name.types), _state_meaning(name.state))
     return (
         f'<g class="t {name.state}"{id_attributes}>'
         f'<rect x="{x}" y="{y - NAME_HIGH / 2:g}" width="{wide}" height="{NAME_HIGH}"'
@@ -149,15 +149,14 @@ def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     )
 
 
-def _meaning(state: str) -> str:
-    """Return what a state means; empty for one without fault."""
+def _state_meaning(state: str) -> str:
     return "" if state == OK else MEANINGS[state]
 
 
-def _label(name: str, robot: str, room: float) -> str:
-    """Return a name cut to ``room`` pixels, with the robot's name in it dimmed."""
+def _label(name: str, robot: str, width: float) -> str:
+    """Return a name cut to ``width`` pixels, with the robot's name in it dimmed."""
     text = visible(name)
-    spaces = int(room / LETTER)
+    spaces = int(width / LETTER)
     for own in (f"/{robot}", f"_{robot}"):
         if robot and text.startswith(f"{own}/") and own[0] == "/":
             rest = clipped(text[len(own) :], spaces - columns(own))
@@ -207,12 +206,12 @@ def visible(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def clipped(text: str, room: int) -> str:
-    """Return ``text`` in at most ``room`` columns, cut in the middle: names differ at their ends."""
-    if len(text) * 2 <= room or columns(text) <= room:
+def clipped(text: str, width: int) -> str:
+    """Return ``text`` in at most ``width`` columns, cut in the middle: names differ at their ends."""
+    if len(text) * 2 <= width or columns(text) <= width:
         return text
-    back = _fitting(text[::-1], room // 2)[::-1]
-    return f"{_fitting(text, room - 1 - columns(back))}…{back}"
+    back = _fitting(text[::-1], width // 2)[::-1]
+    return f"{_fitting(text, width - 1 - columns(back))}…{back}"
 
 
 def columns(text: str) -> int:
@@ -222,12 +221,12 @@ def columns(text: str) -> int:
     return sum(2 if east_asian_width(c) in "WF" else 1 for c in text)
 
 
-def _fitting(text: str, room: int) -> str:
-    """Return the longest beginning of ``text`` that fits into ``room`` columns."""
+def _fitting(text: str, width: int) -> str:
+    """Return the longest beginning of ``text`` that fits into ``width`` columns."""
     at = 0
-    while at < len(text) and room > 0:
-        room -= columns(text[at])
-        at += room >= 0
+    while at < len(text) and width > 0:
+        width -= columns(text[at])
+        at += width >= 0
     return text[:at]
 
 
@@ -291,15 +290,14 @@ def _ordered_names(
         pulls: dict[_NameKey, list[float]] = defaultdict(list)
         for side in (offers, uses):
             for keys in side.values():
-                middle = _middle([rank[key] for key in keys])
+                middle = _mean([rank[key] for key in keys])
                 for key in keys:
                     pulls[key].append(middle)
-        names.sort(key=lambda key: (severity[key], _middle(pulls[key]), key))
+        names.sort(key=lambda key: (severity[key], _mean(pulls[key]), key))
     return names
 
 
-def _middle(values: Sequence[float]) -> float:
-    """Return the mean of the values, 0 for none."""
+def _mean(values: Sequence[float]) -> float:
     return sum(values) / len(values) if values else 0.0
 
 
@@ -307,7 +305,7 @@ def _column(
     joined: Mapping[str, Sequence[_NameKey]], at: Mapping[_NameKey, float], height: float
 ) -> dict[str, float]:
     """Return each node at the middle of its names, moved where two would overlap."""
-    wish = {node: _middle([at[key] for key in keys]) for node, keys in joined.items()}
+    wish = {node: _mean([at[key] for key in keys]) for node, keys in joined.items()}
     order = sorted(wish, key=lambda node: (wish[node], node))
     places: dict[str, float] = {}
     low = -NODE_ROW / 2

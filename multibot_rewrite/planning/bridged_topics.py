@@ -148,12 +148,6 @@ def plugin_libraries(inventory: Inventory) -> list[str]:
     return [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
 
 
-def model_name(inventory: Inventory) -> str:
-    """Return the name of a description's model: <robot> itself, in SDF the first <model>."""
-    root = inventory.document.root
-    return next(root.iter("robot", "model"), root).get("name", "")
-
-
 def is_for_classic(inventory: Inventory) -> bool:
     """Return whether a description is for Gazebo Classic, whose topics no bridge can reach."""
     known = plugin_libraries(inventory)
@@ -163,6 +157,7 @@ def is_for_classic(inventory: Inventory) -> bool:
 
 
 def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) -> Iterator[Found]:
+    """Yield the topics of a robot's sensors and plugins, bridged or not."""
     elsewhere = OF_BOTH if is_for_classic(inventory) else ()
     for sensor in inventory.document.root.iter("sensor"):
         if sensor.get("type") not in elsewhere:
@@ -319,6 +314,7 @@ def _ros_name(name: str) -> str:
 
 
 def _ros_characters(name: str) -> str:
+    """Return a name with ``_`` for characters that ROS does not allow."""
     return _NUMBER.sub("_", _NOT_ROS.sub("_", name))
 
 
@@ -353,14 +349,14 @@ _ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,)}
 
 
 def bridged_as(topics: Iterable[BridgedTopic]) -> tuple[Topic, ...]:
-    """Return the topics that descriptions have, each once."""
+    """Return the bridged topics as records of a plan, each once."""
     return once(
         Topic(it.ros, bridge=_ROLES.get(it.direction, BOTH), type=it.ros_type) for it in topics
     )
 
 
 def once(topics: Iterable[Topic]) -> tuple[Topic, ...]:
-    """Return each topic once, with all that a bridge does with it."""
+    """Return each topic once, with all directions in which a bridge passes it on."""
     found: dict[str, Topic] = {}
     for topic in topics:
         first = found.setdefault(topic.name, topic)

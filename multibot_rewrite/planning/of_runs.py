@@ -24,7 +24,7 @@ _OF_ROBOTS = frozenset(USUAL_FRAMES) - frozenset(WORLD_FRAMES)
 
 
 def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
-    """Return the rules as rcl reads them."""
+    """Return remap rules as rcl parses them."""
     found = (parse_remap(f"{source}:={target}") for source, target in rules)
     return tuple(rule for rule in found if rule is not None)
 

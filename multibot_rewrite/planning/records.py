@@ -81,12 +81,12 @@ class Run(NamedTuple):
 
     @property
     def other_name(self) -> str:
-        """Its name if it is another than that in its code, else empty."""
+        """Its name, if that is not the one in its code; otherwise empty."""
         return self.name if self.name != self.code_name else ""
 
     @property
     def has_fact(self) -> bool:
-        """Return whether it is known what it does."""
+        """Return whether anything is known of what it does."""
         return self.fact.is_known
 
     @property

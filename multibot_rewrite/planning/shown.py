@@ -44,7 +44,7 @@ class Shown(NamedTuple):
         return [name for name, type_ in self.sent.items() if type_ in some]
 
     def clicked(self, word: str) -> str:
-        """Return the topic of this name that it reads, or ""."""
+        """Return the topic with this last word, such as ``initialpose``, that it reads; or ""."""
         return next((it for it in self.read if self.is_called(it, word)), "")
 
     def is_called(self, topic: str, word: str) -> bool:
@@ -54,7 +54,7 @@ class Shown(NamedTuple):
 
 
 def shown_by_robot(plan: System) -> tuple[list[Shown], Shown]:
-    """Return every robot, and what is of all robots."""
+    """Return what can be shown of every robot, and what all robots share."""
     every = {it.name: Shown(it, {}, {}) for it in (Robot(""), *plan.robots)}
     whose = whose_by_plan(plan).robot
     owners = {it.name: it.robot for it in plan.nodes}

@@ -8,13 +8,8 @@ from typing import Any, NamedTuple, TypeAlias
 
 from multibot_rewrite.knowledge.programs import Program
 from multibot_rewrite.planning.records import Rules
-from multibot_rewrite.planning.ways import (
-    COMPONENT,
-    SPAWN,
-    Started,
-    ros_arguments,
-    spawner_arguments,
-)
+from multibot_rewrite.planning.ways import SPAWN, Started, ros_arguments, spawner_arguments
+from multibot_rewrite.system.records import COMPONENT
 
 # The share folder of a package, as launch files in XML have it.
 _SHARE = re.compile(r"\$\(find-pkg-share ([\w-]+)\)")
@@ -52,17 +47,17 @@ class Switch(NamedTuple):
 
 
 def name_in(word: str) -> str:
-    """Return the launch argument of a word of a condition."""
+    """Return the launch argument that a term of a condition is about."""
     return word.strip("!").partition("=")[0].rstrip("!")
 
 
 def values_in(word: str) -> list[str]:
-    """Return the values of a word of a condition; none for one that is true or false."""
+    """Return the values that a term of a condition names; none for a term of true or false."""
     return word.partition("=")[2].split("|") if "=" in word else []
 
 
 def holds(word: str, value: str) -> bool:
-    """Return whether a word of a condition holds with a value of its launch argument."""
+    """Return whether a term of a condition holds with a value of its launch argument."""
     if values := values_in(word):
         return (value in values) != (f"{name_in(word)}!=" in word)
     return (value.lower() in ("true", "1")) == (word[0] != "!")
@@ -148,7 +143,7 @@ class Start(NamedTuple):
 
     @property
     def terms(self) -> list[str]:
-        """The words of its condition."""
+        """The terms of its condition."""
         return self.condition.split()
 
     @property
@@ -173,11 +168,11 @@ class Led(NamedTuple):
 
     @property
     def always(self) -> "list[Led]":
-        """Return what starts without it where its condition does not hold."""
+        """Return the processes after it that start even if its condition does not hold."""
         return [it for it in self.followers if not {*self.start.terms} <= {*it.start.terms}]
 
     def at(self, event: str) -> "list[Led]":
-        """Return what starts at an event."""
+        """Return the processes that start at an event of this one."""
         return [it for it in self.followers if EVENTS[it.start.process.event] == event]
 
 
@@ -218,7 +213,7 @@ def start_of(it: Started, program: Program, parameters: tuple[Parameters, ...] =
 
 
 def spawner_of(it: Started, *words: str | File) -> Start:
-    """Return the spawner of a controller, with further ``words``."""
+    """Return the process that spawns a controller, with further arguments."""
     return Start(*SPAWN, it.node.namespace, arguments=(*spawner_arguments(it), *words))
 
 
@@ -257,7 +252,7 @@ def keywords(it: Start) -> dict[str, Any]:
 
 
 def with_rest(text: str, rest: Any) -> Any:
-    """Return a value of the environment that is added to the rest: ``:`` is where that is."""
+    """Return a value of the environment with ``rest`` in a list, on the side of its ``:``."""
     if text[:1] == ":":
         return [rest, text]
     return [text, rest] if text[-1:] == ":" else text

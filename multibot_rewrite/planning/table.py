@@ -267,6 +267,7 @@ def plugin_nodes(reading: Reading, robot: str) -> Iterator[Run]:
 
 
 def _facts(node: ReadNode) -> NodeFacts:
+    """Return what is known of a plugin's node by its description."""
     endpoints = (
         Endpoint(it.kind, it.role, it.code_name, it.type, parameter=it.parameter, when=it.off)
         for it in node.endpoints

@@ -11,11 +11,6 @@ from math import inf
 from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.ways import (
-    COMPONENT,
-    HOST,
-    PLUGIN,
-    PROCESS,
-    SPAWNER,
     Delivery,
     Started,
     arguments,
@@ -25,6 +20,7 @@ from multibot_rewrite.planning.ways import (
     rules_by_taker,
     started,
 )
+from multibot_rewrite.system.records import COMPONENT, HOST, PLUGIN, PROCESS, SPAWNER
 
 EVERY_ROBOT = "all robots"
 # What programs read of a finding about the table.
@@ -62,6 +58,7 @@ _LAUNCH = (
 
 
 def _python_table(found: list[Started], way: str, name: str, *words: str) -> str:
+    """Return a dictionary as Python: robot -> node -> arguments; empty without rows."""
     what, action, package = words
     rows = [
         f"# Arguments of {what}, by robot and node: {action}(**{name}[robot][node], {package}...)\n"

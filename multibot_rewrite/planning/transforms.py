@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.grouping import chain_ends
 from multibot_rewrite.base.naming import Naming, spelled
 from multibot_rewrite.knowledge.conditions import holds
-from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.system.records import PUBLISHES, Edge, edge_of
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from multibot_rewrite.description.steps.collect import Inventory
+    from multibot_rewrite.knowledge.records import NodeFacts
 
 STATE_PUBLISHER = "robot_state_publisher"
 NO_PLAIN: Mapping[tuple[str, str], str] = {}
@@ -70,7 +70,7 @@ def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:
 
 
 def _named_once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
-    """Return the naming for arguments, which may already have the robot's name before a frame."""
+    """Return a naming that leaves frames as they are which have the robot's name already."""
     own = by_naming("x").removesuffix("x")
     return lambda frame: frame if own and frame.startswith(own) else by_naming(frame)
 

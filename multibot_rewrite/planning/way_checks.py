@@ -17,17 +17,16 @@ from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.planning.of_runs import expanded, name_made_of_other_end, parsed, target_of
 from multibot_rewrite.planning.records import Names, Rule, Rules, Run, Table
-from multibot_rewrite.planning.ways import (
+from multibot_rewrite.planning.ways import Delivery, Key, deliveries, key_of, rules_by_taker
+from multibot_rewrite.system.records import (
+    ACTION,
     COMPONENT,
     PLUGIN,
+    PUBLISHES,
+    SERVICE,
     SPAWNER,
-    Delivery,
-    Key,
-    deliveries,
-    key_of,
-    rules_by_taker,
+    TOPIC,
 )
-from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, TOPIC
 
 
 class _Standing(NamedTuple):
@@ -56,6 +55,7 @@ def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tupl
 
 
 def _with_rules_of_process(it: Delivery, standing: _Standing) -> Run:
+    """Return the node with the rules that rcl has for it and its process."""
     node, own = it.node, standing.rules.get((it.node.robot, it.taker), ())
     if it.way == SPAWNER:
         # A tf listener that its code makes has the arguments of the manager's process alone.
@@ -243,21 +243,21 @@ def useless_rules(
         own, wide, node = _asked_names(run), run.process_wide, run.node
         asked = [own, *(others if wide else ())]
         robot = "" if run.robot == PROBE else run.robot
-        seen: set[tuple[str, str]] = set()
+        seen: dict[tuple[str, str], str] = {}
         for left, target in run.rules:
             text, (whose, source) = f"{left}:={target}", _split_left_side(left)
             match = (whose, resolve_bound(source, TOPIC, own.bare))
-            if match in seen:
+            there, result = match in seen, resolve_bound(target, TOPIC, own.bare)
+            if seen.setdefault(match, result) != result:
                 message = f"{text} has no effect: an earlier rule matches first"
                 yield LATER_RULE.finding(message, "remove it", robot=robot, node=node)
-            elif wide and (controllers is None or source.lstrip("/") in TF_TOPICS):
+            elif there or (wide and (controllers is None or source.lstrip("/") in TF_TOPICS)):
                 pass  # the rewrite itself writes those of tf
             elif wide and not whose and _is_for_controllers(source, known, by_file):
                 pass
             elif not any(_rule_matches(left, it) for it in asked):
                 message = f"{text} matches no name of this node"
                 yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node)
-            seen.add(match)
 
 
 @cache
@@ -277,6 +277,7 @@ def _is_for_controllers(source: str, known: frozenset[str], by_file: bool) -> bo
 
 
 def _asked_names(run: Run) -> _Names:
+    """Return the full names that a node asks for without its rules."""
     bare = bind(run.name, run.namespace, ())
     # What is known of a controller manager only by its rules proves none of them.
     known = [it for it in run.fact.endpoints if it.role or not run.process_wide]
@@ -300,6 +301,7 @@ def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:
 
 
 def _rule_matches(left: str, names: _Names) -> bool:
+    """Return whether the left side of a rule matches a name of its node."""
     whose, source = _split_left_side(left)
     if whose not in ("", names.bare.node):
         return False

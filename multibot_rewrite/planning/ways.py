@@ -16,10 +16,8 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.planning.of_runs import expanded
 from multibot_rewrite.planning.records import Rule, Rules, Run, Table
+from multibot_rewrite.system.records import COMPONENT, HOST, PLUGIN, PROCESS, SPAWNER
 
-PROCESS, HOST, COMPONENT = "process", "host", "component"
-SPAWNER, PLUGIN = "spawner", "plugin"
-WAYS = (PROCESS, HOST, COMPONENT, SPAWNER, PLUGIN)
 # A costmap has the remap rules of the component that makes it (navigation2 4cade8d2f, 1.5.0).
 COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
 
@@ -84,7 +82,7 @@ def merged(nodes: Iterable[Run]) -> tuple[Run, ...]:
 
 
 def way_of(node: Run, known: Nodes, release: str) -> str:
-    """Return how a node of the table gets its rules."""
+    """Return how a node gets its rules: PROCESS, HOST, COMPONENT, SPAWNER or PLUGIN."""
     if node.fact.plugin:
         return PLUGIN
     host = known.get((node.robot, node.fact.host))
@@ -109,6 +107,7 @@ def taker_of(node: Run, known: Nodes, release: str) -> str:
 
 
 def _deliveries_of(node: Run, known: Nodes, release: str, helpers: Sources) -> Iterator[Delivery]:
+    """Yield where the rules of a node are written, and those of its helper nodes."""
     way, taker = way_of(node, known, release), taker_of(node, known, release)
     lead = f"{node.name}:" if way == HOST else ""
     yield Delivery(

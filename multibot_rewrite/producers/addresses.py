@@ -41,13 +41,12 @@ _OFF = ("", "false", "no", "off")
 def of_hardware(
     root: _Element, node: str, place: Place, definitions: Definitions, of_networks: bool = False
 ) -> Iterator[Address]:
-    """Yield the devices of a description: what its known classes open, for others what parameters
-    of such names hold, with ``of_networks`` any address; nothing without an address."""
+    """Yield devices that hardware opens, by its known class or parameter names (or any address)."""
     for system in root.iterfind("ros2_control"):
         section = hardware_section(system, definitions)
         params = system.iterfind("hardware/param")
         values = [(it.get("name", ""), (it.text or "").strip()) for it in params]
-        held = [(_known().get(it[0]) or _of_value(it[1]), *it) for it in values]
+        held = [(_known_parameters().get(it[0]) or _kind_of_value(it[1]), *it) for it in values]
         if of_networks:
             held = [(it[0] or (DEVICE if is_of_network(it[2]) else ""), *it[1:]) for it in held]
         if any(kind == DEVICE and text in NOWHERE for kind, _, text in held):
@@ -71,7 +70,7 @@ def _opened_by(system: _Element, section: PluginDefinition) -> Iterator[tuple[st
 def of_parameters(
     node: str, params: Mapping[str, Param], values: Mapping[str, Given]
 ) -> Iterator[Address]:
-    """Yield what a node's parameters name that no other node can have, or none on that computer."""
+    """Yield what a node's parameters name that only it, or only one node of its computer, can have."""
     for name, given in values.items():
         text = str(given.value).strip()
         known = params.get(name)
@@ -82,29 +81,29 @@ def of_parameters(
 
 
 def of_words(node: str, words: Sequence[str], place: Place) -> Iterator[Address]:
-    """Yield what a program's arguments name: a device, or what a parameter named as the flag holds."""
+    """Yield what a program's arguments name: a device, or what a parameter of a flag's name holds."""
     for flag, word in pairwise(("", *words)):
         name, sign, value = word.partition(":=" if ":=" in word else "=")
         if not sign:
             name, value = flag if flag.startswith("-") else "", word
         label = name.lstrip("-").replace("-", "_")
-        if kind := held_by(label, value) if label else _of_value(value):
+        if kind := held_by(label, value) if label else _kind_of_value(value):
             yield Address(kind, label, value, node, place)
 
 
 def held_by(name: str, text: str) -> str:
-    """Return the kind of what one process has by a parameter of an unknown node: a device in a
-    network or by its number; a device, port or written file of a computer; or empty."""
+    """Return the kind of address that a parameter of an unknown node has: device, computer or empty."""
     word = name.rpartition(".")[2]
     if word in _data()["address"]:
         numbered = word.startswith("serial_n") and text not in NOWHERE
-        return DEVICE if numbered or is_of_network(text) else _of_value(text)
+        return DEVICE if numbered or is_of_network(text) else _kind_of_value(text)
     if word == "port" or word.endswith("_port"):
-        return COMPUTER if text.isdecimal() and int(text) >= _FREE_PORTS else _of_value(text)
-    return COMPUTER if text and word in _data()["written"] else _of_value(text)
+        return COMPUTER if text.isdecimal() and int(text) >= _FREE_PORTS else _kind_of_value(text)
+    return COMPUTER if text and word in _data()["written"] else _kind_of_value(text)
 
 
-def _of_value(text: str) -> str:
+def _kind_of_value(text: str) -> str:
+    """Return COMPUTER for the path of a device; otherwise empty."""
     return COMPUTER if is_device(text) else ""
 
 
@@ -117,7 +116,8 @@ def is_of_network(text: str) -> bool:
         return False
 
 
-def _known() -> Mapping[str, str]:
+def _known_parameters() -> Mapping[str, str]:
+    """Return the kind of address by the name of a parameter."""
     kinds = {"address": DEVICE, CALIBRATION: CALIBRATION, COMPUTER: COMPUTER}
     return {name: kind for key, kind in kinds.items() for name in _data()[key]}
 

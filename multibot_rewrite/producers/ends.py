@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ends that a robot's sources name: its node sets with their parameters, plugins, bridges; and the
-frames of what sensors of gz-sim send.
+"""The ends that a robot's sources name, and the frames of what sensors of gz-sim send.
 
 Source: gz-sim8 src/systems/sensors/Sensors.cc and Imu.cc (a sensor is called as its scoped name),
 gz-sensors src/Sensor.cc (ign-sensors6, gz-sensors8, gz-sensors9: what names the frame, else its own
@@ -55,7 +54,7 @@ _ROLES = {"GZ_TO_ROS": PUBLISHES, "ROS_TO_GZ": SUBSCRIBES}
 
 
 def either_way(end: End) -> Iterator[End]:
-    """Yield the end; one with an unknown role may be on both sides."""
+    """Yield an end; one of an unknown role twice, as publisher and as subscriber."""
     if end.role:
         yield end
         return
@@ -63,8 +62,7 @@ def either_way(end: End) -> Iterator[End]:
 
 
 def run_alone(node: NodeFacts, section: Run | None) -> Run:
-    """Return a node of a robot without a name, under the rules of the usual launch files alone;
-    ``section`` is what a file sets for it."""
+    """Return a node of a robot without a name, by usual launch files and its ``section``."""
     above, _, name = f"/{node.name}".rpartition("/")
     rules = tuple(it for end in node.endpoints if end.remapped for it in _usual_rules(node, end))
     run = Run("", node.name, above or "/", name, rules, node)
@@ -73,14 +71,14 @@ def run_alone(node: NodeFacts, section: Run | None) -> Run:
 
 
 def _usual_rules(node: NodeFacts, end: Endpoint) -> Iterator[tuple[str, str]]:
+    """Yield the rules by which usual launch files rename an end."""
     asked, meant = (end._replace(name=it) for it in (asked_alone(node, end), end.remapped))
     for (_, source), (_, target) in zip(expanded(asked), expanded(meant), strict=True):
         yield source, target
 
 
 class BridgeRow(NamedTuple):
-    """A row of a ros_gz_bridge file: its end in ROS, its name in the simulator, and the frame that it
-    puts in place of the message's, empty for none."""
+    """A row of a ros_gz_bridge file: its end in ROS, its name in the simulator, its frame if set."""
 
     end: End
     inside: str
@@ -93,8 +91,7 @@ def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
 
 
 def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
-    """Yield the rows of a ros_gz_bridge file that runs in the namespace ``above``. The end of a row
-    for both directions has no role; that of a service serves it."""
+    """Yield the rows of a ros_gz_bridge file in a namespace; one of both directions has no role."""
     for row in items(document.root):
         values = {key.value: value for key, value in pairs(row)}
         # A row with one name has it on both sides (ros_gz_bridge bridge_config.cpp).
@@ -125,7 +122,7 @@ def virtual_lookups(semantics: Semantics) -> Iterator[Lookup]:
 
 
 def edges_off(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[Edge]:
-    """Yield what nodes would send, with the parameter that alone switches it off."""
+    """Yield the transforms that one parameter switches off, with the place of that parameter."""
     for it in given:
         node = known.get(it.fact.known)
         runs = filled(node, it) if node and node.sends else None
@@ -133,13 +130,13 @@ def edges_off(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[
             continue
         frames = {frame.parameter: frame.default for frame in runs.frames}
         for send in node.sends:
-            place = _switch(send.condition, runs, it)
+            place = _place_of_switch(send.condition, runs, it)
             if place:
                 pair = edge_of(frames[send.parent], frames[send.child])
                 yield edge(pair, f"/{it.node}", place, sure=OFF)
 
 
-def _switch(condition: str, runs: NodeFacts, given: Run) -> Place | None:
+def _place_of_switch(condition: str, runs: NodeFacts, given: Run) -> Place | None:
     """Return the place of the parameter that alone switches an endpoint off."""
     value_of = lookup(runs, given.values)
     off = [it for it in condition.split(AND) if not holds(it, value_of)]
@@ -157,9 +154,10 @@ _MODEL, _LINK = "model", "link"
 
 
 class SensorFrame(NamedTuple):
-    """The gz topic of a sensor, or that above its topics, and the frame of what it sends: one that its
-    description names, or that which its place in the model makes. ``link`` is
-    where it is written."""
+    """The gz topic of a sensor, or that above its topics, and the frame of what it sends.
+
+    Its description names the frame, or its place in the model makes it. ``link`` is where it is
+    written."""
 
     topic: str
     frame: str
@@ -169,12 +167,11 @@ class SensorFrame(NamedTuple):
 
 
 def sensor_frames(root: _Element, model: str, release: str) -> Iterator[SensorFrame]:
-    """Yield the frames of the sensors on links, in the order of the file; ``model`` is the spawned
-    model's name. In a URDF the links at fixed joints are merged."""
+    """Yield the sensors' frames in file order; in a URDF the links at fixed joints are merged."""
     bodies = read_robot(root).body
     names = [path for path, words in _NAMED if has_release(words, release)]
     for sensor in root.iter("sensor"):
-        link, above = _place(sensor)
+        link, above = _link_and_models(sensor)
         line = cast("int", sensor.sourceline)
         named = next(filter(None, (text_at(sensor, it) for it in names)), "")
         made = "/".join((model, *above, bodies.get(link, link), sensor.get("name", "")))
@@ -189,14 +186,16 @@ def sensor_on(topic: str, sensors: Iterable[SensorFrame]) -> SensorFrame | None:
 
 
 def _is_at(name: str, above: str) -> bool:
+    """Return whether a name is this one or below it."""
     return name == above or name.startswith(f"{above}/")
 
 
 def _full(topic: str) -> str:
+    """Return a topic with a slash in front."""
     return f"/{topic.lstrip('/')}"
 
 
-def _place(sensor: _Element) -> tuple[str, list[str]]:
+def _link_and_models(sensor: _Element) -> tuple[str, list[str]]:
     """Return a sensor's link, empty for a sensor of a joint, and the models around it."""
     host = sensor.getparent()
     if host is None or host.tag not in (_LINK, "gazebo"):

@@ -24,7 +24,7 @@ _MESSAGE = lazy_compile(rb"\A(?:\xef\xbb\xbf)?(?:\s|#[^\n]*\n|---[^\S\n]*\n)*nod
 def read_snapshot(path: str) -> System:
     """Return the snapshot in a file; raises InputError with file, what is wrong and what to do."""
     data = read_file(path, MAX_FLEET_BYTES)
-    text = _text(data, path) if _MESSAGE.match(data) else ""
+    text = _decode(data, path) if _MESSAGE.match(data) else ""
     value = None if text else json_value(data, path)
     if text or (isinstance(value, dict) and "schema" not in value):
         from multibot_rewrite.producers.rosgraph.reading import from_message, from_yaml, is_message
@@ -56,7 +56,7 @@ def read_by_domain(paths: Sequence[str]) -> dict[int, System]:
     return {it: merged(by_domain[it]) for it in sorted(by_domain)}
 
 
-def _text(data: bytes, path: str) -> str:
+def _decode(data: bytes, path: str) -> str:
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

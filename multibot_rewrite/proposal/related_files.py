@@ -15,6 +15,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.producers.launch.known_node import lua_file
 from multibot_rewrite.proposal.choosing import is_srdf_launched, loaded
 from multibot_rewrite.proposal.launches import Bringup
 from multibot_rewrite.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
@@ -268,6 +269,7 @@ def related_files_launched(
 
     files = {kind: [*filter(is_read, getattr(found, kind))] for kind in _NAMED}
     files["rviz"] = [*{os.path.basename(it): it for it in reversed(files["rviz"])}.values()][::-1]
+    files["lua"] = [*filter(os.path.isfile, (lua_file(it.arguments) for it in graph.nodes))]
     lost = [it for it in graph.includes if not os.path.isabs(it.file)]
     handed = "\n".join(value for it in lost for _, value in it.arguments)
     params = [it for it in found.params if it in found.meant or os.path.realpath(it) in handed]

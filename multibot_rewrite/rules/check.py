@@ -134,7 +134,10 @@ def check(
     messages: Mapping[str, int] = NO_COUNTS,
     before: System | None = None,
 ) -> list[Finding]:
-    """Return what is wrong with a system or differs from its plan; ``before``: an older snapshot."""
+    """Return what is wrong with a system or differs from its plan.
+
+    ``messages`` has the counted messages of each topic; ``before`` is the snapshot that the plan
+    was made from, if any."""
     _, seen = side_by_side(plan, graph, messages, before)
     return inconclusive_where_in_doubt(judge(seen), graph)
 
@@ -154,7 +157,7 @@ def side_by_side(
 
 
 def _with_patterns(plan: System, graph: System) -> System:
-    """Return the graph, with the plan's pattern in place of each node name that fits it."""
+    """Return the graph, with a pattern of the plan in place of each node name that fits it."""
     patterns = {it.name: _compiled_pattern(it.name) for it in plan.nodes if ANY in it.name}
     if not patterns:
         return graph
@@ -182,7 +185,6 @@ def _with_running_names(plan: System, graph: System) -> System:
 
 
 def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
-    """Yield a planned end, once for each name of its node that fits its pattern."""
     if ANY not in planned.name:
         yield planned
         return
@@ -240,14 +242,14 @@ def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
 
 
 def _without_bridges(system: System, plan: System) -> System:
-    own = _bridges(plan)
+    own = _domain_bridges(plan)
     return system._replace(
         nodes=tuple(it for it in system.nodes if it.name not in own),
         ends=tuple(it for it in system.ends if it.node not in own),
     )
 
 
-def _bridges(plan: System) -> set[str]:
+def _domain_bridges(plan: System) -> set[str]:
     return {it.name for it in plan.nodes if it.node_set == DOMAIN_BRIDGE}
 
 
@@ -276,7 +278,7 @@ def in_domain(it: Finding, number: int) -> Finding:
 
 def _with_bridge_hint(it: Finding, plan: System) -> Finding:
     """Return a finding of a domain_bridge: if it is missing, or a topic in its file, as that."""
-    if it.node not in _bridges(plan):
+    if it.node not in _domain_bridges(plan):
         return it
     if it.code == missing_endpoint.code:
         hint = f"the file of {DOMAIN_BRIDGE} has no such topic: build the fleet again"

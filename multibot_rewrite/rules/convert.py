@@ -56,7 +56,7 @@ def end_tag_of(text: Spanned, element: _Element) -> int:
 
 def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -> Edit | None:
     """Return the edit that gives an attribute another name and value; None where it is not found."""
-    if slot := _slot(text, element, name):
+    if slot := _attribute_span(text, element, name):
         quote = text.source[slot[0] - 1 : slot[0]].decode()
         begin = text.source.rindex(name.encode(), 0, slot[0])
         return Edit(begin, slot[1], f"{new}={quote}{value}".encode(), None)
@@ -65,7 +65,7 @@ def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -
 
 def removed(text: Spanned, element: _Element, name: str) -> Edit | None:
     """Return the edit that removes an attribute with the white space before it; None without one."""
-    if slot := _slot(text, element, name):
+    if slot := _attribute_span(text, element, name):
         before = len(text.source[: text.source.rindex(name.encode(), 0, slot[0])].rstrip())
         return Edit(before, slot[1] + 1, b"", None)
     return None
@@ -77,12 +77,11 @@ def revalued(text: Spanned, element: _Element, name: str, value: str) -> Edit | 
     if element.get(name) is None:
         tag = text.source[start : start + 1 + len(str(element.tag))]
         return Edit(start, start + len(tag), tag + f' {name}="{value}"'.encode(), None)
-    slot = _slot(text, element, name)
+    slot = _attribute_span(text, element, name)
     return None if slot is None else Edit(*slot, value.encode(), None)
 
 
-def _slot(text: Spanned, element: _Element, name: str) -> tuple[int, int] | None:
-    """Return start and end of an attribute's value; None where it is not found."""
+def _attribute_span(text: Spanned, element: _Element, name: str) -> tuple[int, int] | None:
     return attribute_slot(text.source, text.starts[element], name, element.get(name, ""))
 
 
@@ -211,11 +210,10 @@ def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) 
         return False
     sizes = [number(shape.get(it)) for it in ("length", "radius")]
     known = {it.tag for it in holder.iterchildren("*")} <= _PLAIN
-    return known and all(it is not None and it > 0 for it in sizes) and _pose(holder) is not None
+    return known and all(it is not None and it > 0 for it in sizes) and _pose_of(holder) is not None
 
 
-def _pose(holder: _Element) -> poses.Pose | None:
-    """Return the pose of a visual or collision; None for one that cannot be read."""
+def _pose_of(holder: _Element) -> poses.Pose | None:
     return poses.pose_of(next(holder.iterchildren("origin"), None))
 
 
@@ -227,7 +225,7 @@ def _cylinder_edits(text: Spanned, shape: _Element) -> Iterator[Edit]:
 
 
 def _sphere_texts(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
-    pose, length = _pose(holder), number(shape.get("length"))
+    pose, length = _pose_of(holder), number(shape.get("length"))
     spans = ((text.starts[it], end_of(text, it)) for it in holder.iterchildren("material"))
     material = b"".join(text.source[start:end] for start, end in spans)
     radius = f'<geometry><sphere radius="{shape.get("radius")}"/></geometry>'

@@ -3,20 +3,20 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
-from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, declare, rule
-from multibot_rewrite.system.records import NOWHERE, Place
 
 if TYPE_CHECKING:
     import yaml
 
     from multibot_rewrite.related_files.named_file import NamedFile
     from multibot_rewrite.system.index import Index
+    from multibot_rewrite.system.records import Place
 
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
@@ -96,7 +96,7 @@ def launch_rule(
 
 
 def of_robots(find: _FileCheck) -> _FileCheck:
-    """Return a rule about several robots: it skips a file for no certain robot if none are named."""
+    """Return the check, limited to files of certain robots unless robots are named."""
 
     @wraps(find)
     def found(file: NamedFile) -> Iterator[Finding]:
@@ -110,7 +110,8 @@ def rules_in(package: str, *apart: str) -> list[Rule]:
     """Return the rules in the modules of a package below this one, each once, without ``apart``."""
     name = f"{__package__}.{package}"
     whole = import_module(name)
-    inside = (it.name for it in iter_modules(getattr(whole, "__path__", ())))
+    files = (it for path in getattr(whole, "__path__", ()) for it in sorted(os.listdir(path)))
+    inside = (it[:-3] for it in files if it.endswith(".py") and it != "__init__.py")
     modules = [import_module(f"{name}.{it}") for it in inside if it not in apart]
     found = (it for one in (whole, *modules) for it in vars(one).values() if isinstance(it, Rule))
     return list({id(it): it for it in found}.values())
@@ -185,7 +186,7 @@ def at(rule: Rule, place: Place, message: str, hint: str, **more: Any) -> Findin
 
 def last_place(records: Iterable[Placed]) -> dict[str, Any]:
     """Return the place fields of a finding, at the last record that has a place; empty without one."""
-    places = [it.place for it in records if it.place != NOWHERE]
+    places = [it.place for it in records if it.place.file]
     return _place_fields(places[-1]) if places else {}
 
 
@@ -196,6 +197,6 @@ def _place_fields(place: Place) -> dict[str, Any]:
 
 def see_all(records: Iterable[Placed]) -> str:
     """Return ``; see FILE:LINE and FILE:LINE``: the places of all but the last one."""
-    places = dict.fromkeys(str(it.place) for it in records if it.place != NOWHERE)
+    places = dict.fromkeys(str(it.place) for it in records if it.place.file)
     others = [*places][:-1]
     return f"; see {' and '.join(others)}" if others else ""

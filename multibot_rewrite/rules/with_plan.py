@@ -37,7 +37,9 @@ def one_for_a_cause(
     rules: Mapping[str, Rule],
     in_doubt: bool,
 ) -> list[Finding]:
-    """Return the findings of system and plan, one a cause; ``in_doubt``: there may be more."""
+    """Return the findings of a system and its plan, one for each cause.
+
+    ``in_doubt``: the system may have more than was seen."""
     left = [it for it in found if not _is_meant(plan, seen, it, rules[it.code])]
     # What is there counts before what is missing, then the first.
     places: list[dict[_About, int]] = [{}, {}]
@@ -63,6 +65,12 @@ def one_for_a_cause(
         it._replace(level=NOTE) if it.code == nothing_known_sends.code else it
         for it in untold(it for it in (*kept, *others) if it in every)
     ]
+
+
+def subject_of(plan: Index, it: Finding) -> tuple[str, ...]:
+    """Return the code, and the names without those of robots or the message; equal for what is found
+    in the sources of a plan and in what runs of it."""
+    return (it.code, *map(plan.plain, it.names)) if it.names else (it.code, it.message)
 
 
 def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:

@@ -59,7 +59,7 @@ class Coverage(NamedTuple):
 
     @property
     def total(self) -> Covered:
-        """The sums over all robots."""
+        """The counts of all robots together."""
         columns = zip(*(it[1:] for it in self.robots), strict=True)
         return Covered("", *map(sum, columns)) if self.robots else Covered("", 0, 0, 0, 0)
 
@@ -126,6 +126,7 @@ def _is_launched(system: System) -> bool:
 
 
 def _details_in_words(held: Coverage) -> Iterator[str]:
+    """Yield how many nodes are known, seen and silent, in words."""
     total = held.total
     if held.told and not total.unknown:
         yield f"all known{_partly_known_in_words(total)}"

@@ -74,7 +74,7 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
 
 
 def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
-    """Return whether a namespace's base hangs on that of a robot without a name."""
+    """Return whether a namespace's base frame is below that of a robot without a name."""
     word = namespace.rpartition("/")[2]
     return any(f"{word}{way}{base}" in parts for way in "/_" for base in BODY_FRAMES)
 
@@ -193,7 +193,7 @@ def _frame_robots(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Ite
 
 
 def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[str]]) -> set[str]:
-    """Return the words whose frames hang on none of another word's."""
+    """Return the words whose frames are below none of another word's."""
     owners = {frame: word for word, frames in words.items() for frame in frames}
     above = {
         word: {owners.get(it, word) for it in _frames_above(frames, parents)}
@@ -203,7 +203,7 @@ def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[s
 
 
 def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterator[GuessedRobot]:
-    """Yield each with the way in which most frames have its name."""
+    """Yield each robot with the way in which most frames have its name."""
     times = Counter(way for frame in frames for way in _affixes(frame))
     for robot in robots:
         word = robot.namespace.rpartition("/")[2] or robot.name
@@ -214,7 +214,7 @@ def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterat
 
 
 def _affixes(frame: str) -> Iterator[tuple[str, str]]:
-    """Yield the beginnings and ends of a frame up to each separator, with it."""
+    """Yield each beginning and each end of a frame that a separator bounds, with it."""
     for at, it in enumerate(frame):
         if it == "/" or it in SEPARATORS:
             yield frame[: at + 1], ""
@@ -275,6 +275,7 @@ def _words_in(name: str) -> Iterator[str]:
 
 
 def _plain_name(name: str, robot: GuessedRobot | None) -> str:
+    """Return a name without the robot's namespace or name."""
     if robot is None:
         return name
     if robot.namespace and name.startswith(f"{robot.namespace}/"):

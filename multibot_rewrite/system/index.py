@@ -94,7 +94,7 @@ NOTHING_KNOWN = Known()
 
 
 def once(make: _Look) -> _Look:
-    """Decorate a look-up: it is made when first asked for, and kept by the last index asked."""
+    """Decorate a property: its value is made when first asked for, the last index asked keeps it."""
 
     @wraps(make)
     def found(*indices: Any) -> Any:
@@ -130,7 +130,7 @@ class Index(NamedTuple):
     @property
     @once
     def sure(self) -> "Index":
-        """The same without the ends that only may be there."""
+        """The index without the ends that exist only on a condition."""
         system = surely(self.system)
         return self if system is self.system else self._replace(system=system, memo={})
 
@@ -179,7 +179,7 @@ class Index(NamedTuple):
     @property
     @once
     def sent(self) -> Sequence[Sent]:
-        """The transforms by the nodes that send them."""
+        """The transforms that a plan has, each with the node that sends it."""
         return [
             Sent(node, it.parent, it.child) for it in self.system.edges for node in it.publishers
         ]
@@ -187,13 +187,13 @@ class Index(NamedTuple):
     @property
     @once
     def by_key(self) -> Mapping[EndKey, End]:
-        """The last end of each key, hidden ones as well."""
+        """The last end with each node, kind, role and name; hidden ones, too."""
         return {(it.node, it.kind, it.role, it.name): it for it in self.system.ends}
 
     @property
     @once
     def by_node(self) -> Mapping[str, Sequence[End]]:
-        """The ends of each node, hidden ones as well."""
+        """The ends of each node; hidden ones, too."""
         return lists_by_key((end.node, end) for end in self.system.ends)
 
     @property
@@ -278,7 +278,7 @@ class Index(NamedTuple):
 
     @property
     def nobody(self) -> str:
-        """Return words for no node: if others may run, for no known node."""
+        """Return ``no node``, or ``no known node`` if nodes may be missing in the view."""
         return "no known node" if incomplete(self.system) else "no node"
 
     def is_tool(self, node: str) -> bool:
@@ -368,7 +368,7 @@ def nodes_of(ends: Iterable[End]) -> tuple[str, ...]:
 
 
 def at_work(ends: Iterable[End]) -> list[End]:
-    """Return the ends of nodes that are no viewers."""
+    """Return the ends without those of viewers."""
     return [end for end in ends if not is_viewer(end.node)]
 
 

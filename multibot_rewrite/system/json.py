@@ -50,6 +50,7 @@ def to_yaml(system: System) -> str:
 
 
 def _block(value: Mapping[str, Any], indent: str) -> Iterator[str]:
+    """Yield the lines of a mapping in YAML, a line for each record."""
     for key, item in value.items():
         if not has_rows(item):
             yield f"{indent}{key}: {_flow(plain_value(item))}\n"

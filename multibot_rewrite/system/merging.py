@@ -65,7 +65,7 @@ def merged(looks: Sequence[Look]) -> System:
 
 
 def joined(first: System, *others: System) -> System:
-    """Return the first system, with what is in others as well."""
+    """Return the first system with the nodes, ends and other records of the others added."""
     every: dict[str, Any] = {
         key: tuple(it for one in (first, *others) for it in getattr(one, key)) for key in _HELD
     }
@@ -73,6 +73,7 @@ def joined(first: System, *others: System) -> System:
 
 
 def _check_one_system(looks: Sequence[Look]) -> None:
+    """Raise UsageError for snapshots of two domains, or of DDS and Zenoh."""
     first = looks[0]
     around = first.snapshot.environment
     for look in looks[1:]:

@@ -62,6 +62,7 @@ def has_rows(value: Any) -> bool:
 
 
 def _below_robots(system: System) -> dict[str, object]:
+    """Return robots with their nodes, nodes with ends and parameters, and what is left."""
     nodes: dict[str, list[object]] = defaultdict(list)
     ends = lists_by_key((it.node, it) for it in system.ends)
     parameters = lists_by_key((it.node, it) for it in system.parameters)
@@ -111,7 +112,7 @@ def _row_of_end(end: End) -> object:
 
 
 def system_from(value: dict[str, Any]) -> System:
-    """Return the system of a file's value; raises WrongValue."""
+    """Return the system that the value of a file describes; raises WrongValue."""
     found: dict[str, list[Any]] = defaultdict(list)
     _read_below("robots", partial(_read_robot, found), value.pop("robots", ()))
     _read_below("nodes", partial(_read_node, found, ""), value.pop("nodes", ()))
@@ -125,6 +126,7 @@ def system_from(value: dict[str, Any]) -> System:
 
 
 def _read_below(key: str, read: Reader, values: object) -> Any:
+    """Return what ``read`` makes of the values below a key, which errors name."""
     try:
         return read_list(read, values)
     except WrongValue as wrong:

@@ -208,7 +208,7 @@ def _ends(segment: str) -> Iterator[str]:
 
 
 def _without_tag(segment: str, tag: str, is_last: bool) -> str:
-    """Return the segment without the tag: of ``robot_state_publisher_robot`` that where tags are."""
+    """Return the segment without the tag, which is at its other end only if it is not at this one."""
     before, after = segment.removesuffix(tag), segment.removeprefix(tag)
     ends = {True: (before, before.rstrip(SEPARATORS)), False: (after, after.lstrip(SEPARATORS))}
     found = (
@@ -242,7 +242,7 @@ def name_ownership(plan: System) -> NameOwnership:
 
 
 def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) -> set[str]:
-    """Return the words of nodes and names without the robot's name that may be a robot's."""
+    """Return the words in planned names, without the robots' own, that could be a robot's name."""
     nodes = draft.nodes
     likely = draft.robots.keys() & _segments_and_ends({w.code_name for w in plan.ends})
     # A node of all robots may name a robot's topic in its code, as a domain_bridge does.

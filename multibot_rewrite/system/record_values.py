@@ -58,7 +58,7 @@ class WrongValue(Exception):
 
 
 def unexpected(expected: str, value: object) -> WrongValue:
-    """Return the error that something else was expected."""
+    """Return the error for a value where something else was expected."""
     return WrongValue(f"expected {expected}, not {shown(value)}")
 
 
@@ -71,7 +71,7 @@ def read_plain(expected: type, value: object) -> object:
 
 
 def read_word(words: tuple[str, ...], value: object) -> object:
-    """Return one of these words."""
+    """Return the value, if it is one of these words; raises WrongValue for another."""
     if value not in words:
         raise unexpected(f"one of {', '.join(words)}", value)
     return value
@@ -89,7 +89,7 @@ def read_policies(policies: Collection[str], value: object) -> object:
 
 
 def read_nothing(value: object) -> object:
-    """Raise WrongValue for what no file has."""
+    """Raise WrongValue for a field that no file can have."""
     raise WrongValue("not a key of a file; leave it out")
 
 
@@ -209,6 +209,7 @@ def _limited(expected: Any, limit: object) -> Reader:
 
 
 def _read_short(kind: type, whole: Reader, value: object) -> object:
+    """Return a record from a value, or from the text that is short for it."""
     return whole(SHORT[kind][1](value)._asdict() if isinstance(value, str) else value)
 
 

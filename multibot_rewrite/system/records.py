@@ -19,6 +19,10 @@ COMMAND, STATE, JOINT = "command", "state", "joint"
 EXPORTS, CLAIMS = "exports", "claims"
 # What the node of a hardware component is known as.
 HARDWARE_NODE = "hardware_component"
+# How a node gets its remap rules.
+PROCESS, HOST, COMPONENT = "process", "host", "component"
+SPAWNER, PLUGIN = "spawner", "plugin"
+WAYS = (PROCESS, HOST, COMPONENT, SPAWNER, PLUGIN)
 # Kinds of addresses.
 DEVICE, CALIBRATION, COMPUTER, OWN = "device", "calibration", "computer", "own"
 # Why an observation ended: all expected nodes are there, the graph no longer changes, the timeout
@@ -163,7 +167,7 @@ class Node(NamedTuple):
     (SROS2), empty for none. ``robot`` is its robot's name, empty for a node of all robots or where that
     is not known. ``lifecycle`` is the label of its state, empty for a node that is not managed.
     ``host`` is any word: nodes of one host run on one machine, those of two on two. ``way`` is how it
-    gets its remap rules if not by --ros-args of its own (``remap.ways``), ``taker`` the node that takes
+    gets its remap rules if not by --ros-args of its own (of ``WAYS``), ``taker`` the node that takes
     them for it. ``plugin`` is where a description has the plugin that starts it, ``place`` what else
     names it, ``node_set`` the node set that it is from. ``known`` is what its node set or file
     calls it, ``untold`` what its source does not tell before it runs, each with its place.
@@ -424,12 +428,12 @@ def doubts(system: System) -> tuple[Caveat, ...]:
 
 
 def unseen(system: System) -> tuple[Caveat, ...]:
-    """Return the doubts about whether all nodes and ends are seen; those of a silent node are."""
+    """Return the doubts whether all nodes and ends are seen, without those about silent nodes."""
     return tuple(caveat for caveat in doubts(system) if caveat.code != SILENT)
 
 
 def clocks(system: System) -> dict[str, bool]:
-    """Return by node whether it goes by simulated time, if known."""
+    """Return whether each node uses simulated time, if known."""
     told = (it for it in system.parameters if it.name == SIM_TIME and it.value != UNTOLD)
     return {it.node: it.value == "true" for it in told}
 

@@ -82,12 +82,12 @@ def is_description(name: str, type_: str) -> bool:
 
 
 def is_of_a_body(type_: str) -> bool:
-    """Return whether a single robot's body measures it: its joints, its way, its scan."""
+    """Return whether a message type is of one robot's own data: joints, odometry, scans."""
     return type_ in _BODY
 
 
 def is_of_one_sensor(type_: str) -> bool:
-    """Return whether one device, or one filter, sends messages of a type."""
+    """Return whether messages of a type come from one device or filter."""
     return type_ in _OF_ONE_SENSOR
 
 
@@ -115,7 +115,7 @@ def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
 
 
 def is_viewer(node: str) -> bool:
-    """Return whether a node only looks, or passes on what a person asks for."""
+    """Return whether a node only shows data, or passes on what a person asks for."""
     return only_looks(last_word(node))
 
 

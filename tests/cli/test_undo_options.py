@@ -21,6 +21,12 @@ ROVER = FIXTURES / "robots" / "rover.urdf"
         ("--affix prefix --separator _", "--affix prefix", "--separator _"),
         ("--layout frames-per-robot", "", "--layout frames-per-robot"),
         ("--layout both --affix prefix", "--layout both", "--affix prefix"),
+        ("--shared lidar_link", "", "--shared lidar_link"),
+        (
+            "--shared lidar_link,imu_link --separator _",
+            "",
+            "--separator _ --shared lidar_link,imu_link",
+        ),
         # That of frame-prefix alone would be verified as well, and leave the links.
         (
             "--layout frames-per-robot --affix prefix",

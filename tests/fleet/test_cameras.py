@@ -154,3 +154,19 @@ def test_of_two_ends_none_is_surely_the_one_camera(
     infos = {"/robot1/depth/camera_info", "/robot1/rgb/camera_info"}
     assert heard(out, "/robot1/RegisterNode", INFO) == infos
     assert WAITS in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", ["thermal_camera", "depth_camera"])
+def test_infos_beside_the_images_of_two_robots_are_one_error_with_its_remedy(
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """ThermalCameraSensor.cc, DepthCameraSensor.cc: AdvertiseInfo asks a CameraSensor that was not
+    loaded for <camera_info_topic>, and takes the place beside the image."""
+    description = robot(tmp_path, camera("eye", kind))
+    built(tmp_path, "jazzy", "postfix", "rviz", description, "topics: namespace\n")
+    capsys.readouterr()
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(fleet.read_text().replace("topics: namespace\n", ""))
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 1
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if " error: " in it)
+    assert "robot.urdf" in told and "use topics: namespace" in told

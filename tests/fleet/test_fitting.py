@@ -302,6 +302,32 @@ def test_what_is_added_sends_where_the_robots_own_bridge_takes_commands(
 
 
 @pytest.mark.parametrize(
+    ("rows_", "topic", "direction"),
+    [
+        # The rows are of a thruster, of another robot, and of this one.
+        ((("pan", "pan"),), "cmd_vel", "ROS_TO_GZ"),
+        ((("drive", "/model/rover/cmd_vel"), ("o", "/model/o/cmd_vel")), "drive", "ROS_TO_GZ"),
+        ((("up", "/model/rover/x"), ("o", "/model/o/cmd_vel")), "cmd_vel", "ROS_TO_GZ"),
+        ((("pan", "pan"), ("drive", "/model/rover/cmd_vel")), "drive", "BIDIRECTIONAL"),
+    ],
+)
+def test_a_row_takes_the_commands_if_it_is_of_the_drive(
+    rows_: tuple[tuple[str, str], ...], topic: str, direction: str, tmp_path: Path
+) -> None:
+    """The drive has no topic: gz-sim calls it /model/NAME/cmd_vel (DiffDrive.cc)."""
+    text = "".join(ROW.format(*it) for it in rows_).replace("ROS_TO_GZ", direction)
+    (tmp_path / "bridge.yaml").write_text(text)
+    rover = ROVER.read_text().replace("<topic>cmd_vel</topic>", "")
+    (tmp_path / "rover.urdf").write_text(rover)
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    robots = "robots: [{name: robot1}, {name: robot2}]\n"
+    fleet.write_text(f"layout: both\ndescription: rover.urdf\n{BRIDGED}teleop\n{robots}")
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    assert planned(out, "/robot1/twist_mux", "publishes", f"/robot1/{topic}")
+    assert rows(out)[f"/robot1/{topic}"] == PLAIN
+
+
+@pytest.mark.parametrize(
     ("inputs", "topic"),
     [
         ({"stick": "joy", "other": "keys"}, "other"),

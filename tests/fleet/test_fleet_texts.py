@@ -24,9 +24,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.bridge_outputs import fill_bridge, merge_bridges
 from multibot_rewrite.fleet.robots import start_poses
-from multibot_rewrite.planning.bridged_topics import (
-    BridgedTopic,
-)
+from multibot_rewrite.planning.bridged_topics import BridgedTopic, bridged_topics
 from multibot_rewrite.planning.start import shell_line
 from multibot_rewrite.related_files.bridge import BridgeFile, rewrite_bridge
 from multibot_rewrite.related_files.context import make_context
@@ -163,17 +161,22 @@ LISTENS = """<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::
 <input type="a" topic="/model/{}/{}"/><output type="b" topic="/tripped"/></plugin></gazebo>"""
 
 
-@pytest.mark.parametrize(
-    ("model", "topic", "told"),
-    [("rover", "odometry", True), ("rover", "other", False), ("other", "odometry", False)],
-)
-@pytest.mark.parametrize("layout", ["L1", "L5"])
-def test_a_topic_of_the_own_model_by_another_name_is_reported(
-    fleet: Any, layout: str, model: str, topic: str, told: bool
+@pytest.mark.parametrize(("model", "is_own"), [("rover", True), ("other", False)])
+@pytest.mark.parametrize("layout", [*LAYOUTS, "L5"])
+def test_a_robot_is_spawned_by_the_name_in_its_topics(
+    fleet: Any, layout: str, model: str, is_own: bool
 ) -> None:
-    """DiffDrive.cc makes /model/NAME/odometry of the name that the model is spawned with."""
-    _, findings = spawn.spawns(fleet(layout, body=LISTENS.format(model, topic)))
-    assert [it.code for it in findings if it.code == "MF707"] == ["MF707"] * 2 * told
+    """DiffDrive.cc makes /model/NAME/odometry of the name that the model is spawned with. The second
+    robot has another one in the fleet file."""
+    plan = fleet(layout, body=LISTENS.format(model, "odometry"))
+    made, findings = spawn.spawns(plan)
+    name = plan.robots[0].member.inventory.model if is_own else "r1"
+    assert [it.model for it in made] == [name, "second"]
+    bridged, _ = bridged_topics(plan.fleet.inventories, plan.fleet.naming, plan.fleet.models)
+    own = f"/model/{name}/odometry"
+    assert own in {it.gz for it in bridged}
+    assert (own in plan.robots[0].description.decode()) == is_own
+    assert [it.code for it in findings if it.code == "MF707"] == ["MF707"] * is_own
 
 
 OLD = '<gazebo><plugin name="p" filename="lib{}.so">{}</plugin></gazebo>'

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 from given_parameters import run_given
 
-from multibot_rewrite.checks.left_idle import left_idle
+from multibot_rewrite.checks.judged_plan import left_idle
 from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Given, Run

@@ -145,6 +145,42 @@ def test_a_description_fits_its_robot(links: str, joints: str, told: str) -> Non
 
 
 @pytest.mark.parametrize(
+    ("links", "heard", "level", "reader"),
+    [
+        # robot_state_publisher.cpp sends a moving joint when its state comes.
+        ("base, arm, hand", "a", "warning", ""),
+        ("base, arm, tool, hand", "a", "warning", ""),
+        ("robot1/base, robot1/arm, robot1/hand", "a", "warning", ""),
+        (
+            "base, arm, hand",
+            "a",
+            "error",
+            "/robot1/move_group",
+        ),
+        # A mimic joint has no state of its own, and its link is sent.
+        ("base, arm", "a", "", ""),
+        ("base, arm, hand", "a b", "", ""),
+        ("base, arm, hand", "", "", ""),
+    ],
+)
+def test_a_joint_whose_state_nobody_sends(links: str, heard: str, level: str, reader: str) -> None:
+    lines = [it.format(robot) for robot in ("robot1", "robot2") for it in ROBOT]
+    lines.append(f"description on /robot1/robot_description: links {links}; joints a, b")
+    lines.append("transform robot1/tip -> robot1/tool on /tf_static by /robot1/rsp")
+    lines += [f"joints {it} on /robot1/joint_states" for it in heard.split()]
+    lines += [
+        f"{it} subscribes /robot1/joint_states sensor_msgs/msg/JointState" for it in reader.split()
+    ]
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    assert [(it.code, it.level, it.node) for it in found] == (
+        [("MG420", level, "/robot1/rsp")] if level else []
+    )
+    lost = ", ".join(links.split(", ")[2:])
+    said = f"no state of b on /robot1/joint_states, so no transform leads to {lost}"
+    assert all(said in it.message for it in found)
+
+
+@pytest.mark.parametrize(
     ("heard", "wrong"), [(["head"], False), (["head", "a"], False), (["head", "neck"], True)]
 )
 def test_several_who_send_joints_have_them_together(heard: list[str], wrong: bool) -> None:

@@ -73,6 +73,38 @@ def test_a_map_that_nothing_joins_with_its_robot_is_one_finding() -> None:
     assert [it.code for it in diagnose(with_map).findings] == ["MG415"]
 
 
+@pytest.mark.parametrize(
+    ("frame", "topic", "codes"),
+    [
+        ("map", "/robot1/map", []),
+        ("robot1/odom", "/robot1/map", ["MG415"]),
+        ("robot3/base_link", "/robot3/map", []),
+        # A local costmap.
+        ("robot1/odom", "/robot1/costmap", []),
+        # Nothing says that it moves.
+        ("robot3/odom", "/robot3/map", []),
+    ],
+)
+def test_a_map_is_not_in_the_frame_of_odometry(frame: str, topic: str, codes: list[str]) -> None:
+    sent = f"{topic.rpartition('/')[0]}/server publishes {topic} nav_msgs/msg/OccupancyGrid"
+    third = "transform robot3/odom -> robot3/base_link on /tf"
+    told = found(sent, third, f"frame_id {frame} on {topic}")
+    assert [(it.code, it.level) for it in told] == [(it, "warning") for it in codes]
+    assert all(f"is {frame}, which moves in map" in it.message for it in told)
+
+
+@pytest.mark.parametrize(("own", "codes"), [(True, ["MG411"]), (False, [])])
+def test_a_map_in_another_robots_frame(own: bool, codes: list[str]) -> None:
+    """Without a frame of its own for a map, a robot may be on another one's."""
+    frames = [f"transform robot{at}/map -> robot{at}/odom on /tf" for at in (1, 2)[: 1 + own]]
+    sent = "/robot2/map_server publishes /robot2/map nav_msgs/msg/OccupancyGrid"
+    told = judge(read_system("".join(f"running: {it}\n" for it in (
+        *frames, "transform robot2/odom -> robot2/base_link on /tf", sent,
+        "frame_id robot1/map on /robot2/map"))))  # fmt: skip
+    assert [it.code for it in told] == codes
+    assert all("set the frame of /robot2/map_server to robot2/map" in it.hint for it in told)
+
+
 def test_another_robots_frame_is_named_with_both() -> None:
     (it,) = found("frame_id robot2/camera_link on /robot1/image")
     assert (it.code, it.robot) == ("MG411", "robot1")

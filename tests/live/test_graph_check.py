@@ -20,7 +20,7 @@ from small_fleet import LINKS, NODES, healthy, plan
 
 from multibot_rewrite.base.naming import make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.planning.plan import expect
+from multibot_rewrite.planning.planned_system import expect
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.system.records import (
     PUBLISHES,

@@ -13,7 +13,8 @@ from plans import PlannedRobot, own as nodes_of, planned, planned_end
 from multibot_rewrite.base.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.planning.plan import expect, read_plan, to_yaml
+from multibot_rewrite.planning.plan import read_plan, to_yaml
+from multibot_rewrite.planning.planned_system import expect
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.json import from_json, to_json

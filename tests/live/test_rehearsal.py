@@ -40,11 +40,10 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
     without_doubles,
 )
-from multibot_rewrite.planning.plan import expect
+from multibot_rewrite.planning.planned_system import expect
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table, plugin_nodes
 from multibot_rewrite.planning.transforms import edges_of, frames_of, with_odometry
-from multibot_rewrite.planning.ways import WAYS
 from multibot_rewrite.system.json import from_json
 from multibot_rewrite.system.records import (
     ACTION,
@@ -54,6 +53,7 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
+    WAYS,
     Edge,
     System,
     edge_of,

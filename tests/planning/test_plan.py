@@ -22,7 +22,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.planning.of_runs import target_of
-from multibot_rewrite.planning.plan import expect
+from multibot_rewrite.planning.planned_system import expect
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.planning.table_formats import FORMS

@@ -205,7 +205,7 @@ def read_here(
     monkeypatch.setattr(tempfile, "tempdir", None)
     monkeypatch.setitem(sys.modules, "rosbags", SimpleNamespace())
     monkeypatch.setitem(sys.modules, "rosbags.rosbag2", SimpleNamespace(Reader=Opened(fault)))
-    found = read._read("/unpacked/here", 7, str(path))
+    found = read._read_with_limits("/unpacked/here", 7, str(path))
     assert tempfile.tempdir == "/unpacked/here" and set(limits) <= {7}
     assert limits or isinstance(found, InputError), "nothing bounds what it unpacks to"
     return str(found) if isinstance(found, InputError) else found
@@ -305,4 +305,4 @@ def test_a_bag_is_read_in_one_process_that_may_unpack_forty_times_its_largest_fi
         with pytest.raises(InputError) as refused:
             read.read_bag(str(path))
         assert str(refused.value) == f"{path}: the process that read it was ended by signal 9"
-        assert asked.pop() == (read._read, True, most, [str(path)], 1)
+        assert asked.pop() == (read._read_with_limits, True, most, [str(path)], 1)

@@ -212,3 +212,52 @@ def test_a_tree_in_pieces_is_one_line_of_one_level(
         assert (ended, told) == (int(level == "error"), [(level, "one")])
         if level == "error":
             return
+
+
+REAL = """<robot name="rover"><link name="base_link"/><link name="laser"/>
+<joint name="j" type="fixed"><parent link="base_link"/><child link="laser"/></joint></robot>"""
+LACKING = "amcl:\n  ros__parameters: {base_frame_id: base_footprint}\n"
+OF_NOBODY = "camera:\n  ros__parameters: {fps: 30}\n"
+
+
+@pytest.mark.parametrize(
+    ("node_set", "layout", "params", "codes"),
+    [
+        # The driver of a real robot sends its odometry.
+        ("localization", "tf-per-robot", "", {"MG406 note"}),
+        ("localization", "postfix", LACKING, {"MG406 note", "MG413 note"}),
+        # Nothing is bridged for real robots.
+        ("bridge", "tf-per-robot", "", set()),
+        # None of the nodes that the file is for is started.
+        ("perception", "postfix", "", set()),
+        ("robot_state", "tf-per-robot", OF_NOBODY, set()),
+        # Rules for what is switched off.
+        ("rtabmap", "postfix", "", {"MG406 note"}),
+    ],
+)
+def test_a_built_folder_of_real_robots_is_called_what_the_build_calls_it(
+    node_set: str, layout: str, params: str, codes: set[str],
+    tmp_path: Path, capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    """With the plan, too, and each cause in one line."""
+    (tmp_path / "rover.urdf").write_text(REAL)
+    (tmp_path / "p.yaml").write_text(params)
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    fleet.write_text(
+        f"distro: jazzy\nsimulator: none\nlayout: {layout}\nnode_sets: [{node_set}]\n"
+        f"description: rover.urdf\nrobots: [{{name: one}}, {{name: two}}]\n"
+        + "related_files: {params: p.yaml}\n"
+        * bool(params)
+    )
+    launched = ["check-launch", str(out / "fleet.launch.py")]
+    told = []
+    for command in (
+        ["build", str(fleet), "-o", str(out)], launched, [*launched, "--plan", str(out / "plan.yaml")]
+    ):  # fmt: skip
+        assert main([*command, "--format", "json"]) == 0
+        found = json.loads(capsys.readouterr().out)["findings"]
+        of_launch = [it for it in found if it["code"] not in ("MG316", "MF857", "MF858", "MB853")]
+        told.append(of_launch)
+    assert [{f"{it['code']} {it['level']}" for it in its} for its in told] == [codes] * 3
+    lines = [[it["code"] for it in its if it["code"] == "MG413"] for its in told[1:]]
+    assert lines[0] == lines[1]

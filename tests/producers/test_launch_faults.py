@@ -545,7 +545,8 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     # mokh94519/new_mobile_manipulator: xacro of the launch itself writes it.
     "what a program may write": ("MG713", False, "", (_SPAWN.format('"/tmp/not_made_yet.urdf"'),)),
     "what nobody installs": ("MG713", True, "", (_SPAWN.format('str(HERE / "lost.urdf")'),)),
-    "no odometry": ("MG406", True, "", (_AMCL, _BASE)),
+    "no odometry": ("MG406", True, "", (_AMCL, _BASE, _SPAWN_AS.format("--z=0"))),
+    "no odometry of a real robot": ("MG406", False, "", (_AMCL, _BASE)),
     "no odometry, beside a driver": ("MG406", False, "", (_AMCL, _BASE, _DRIVER)),
     # Nothing that is not known changes what a parameter says.
     "a time of its own, beside what is not known": ("MG503", True, "", (*_MIXED, _DRIVER)),
@@ -576,6 +577,15 @@ def test_a_file_that_includes_itself_is_refused(
     of_nodes(tmp_path, "IncludeLaunchDescription(__file__)", head=_HEAD)
     assert main(["check-launch", str(tmp_path / LAUNCH)]) == 2
     assert "it includes or calls itself without an end" in capsys.readouterr().err
+
+
+def test_a_link_to_itself_in_the_folder_is_passed_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "loop.yaml").symlink_to("loop.yaml")
+    of_nodes(tmp_path, _TIMED, head=_HEAD)
+    assert main(["check-launch", str(tmp_path / LAUNCH)]) == 0
+    assert "cannot be read" not in capsys.readouterr().err
 
 
 def test_a_file_says_what_it_has_to_be_given(

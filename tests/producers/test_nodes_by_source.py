@@ -404,7 +404,7 @@ def without_reader(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(sys.modules, name, None)
     monkeypatch.setattr(expressions, "find_spec", lambda name: None)
     expressions._tools.cache_clear()
-    programs._parsed.cache_clear()
+    programs._parsed_once.cache_clear()
 
 
 @pytest.mark.usefixtures("without_reader")

@@ -79,7 +79,7 @@ def test_when_the_graph_is_settled_the_names_that_came_last_are_known(
         observe, "overview", lambda _: (["/lidar"], [SCAN]) if clock.now > 1 else ([], [])
     )
     monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
-    monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
+    monkeypatch.setattr(observe, "_quiet_seconds", lambda *_: observe.assemble.QUIET_SECONDS)
     updates: list[Any] = []
     heard: Any = SimpleNamespace(update=updates.append)
     made = session(clock)
@@ -118,7 +118,7 @@ def test_two_participants_see_whether_the_network_loses_packets(
     monkeypatch.setattr(look, "overview", overview)
     monkeypatch.setattr(observe, "overview", overview)
     monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
-    monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
+    monkeypatch.setattr(observe, "_quiet_seconds", lambda *_: observe.assemble.QUIET_SECONDS)
     second = look.SecondParticipant(made, None)  # type: ignore[arg-type]
     second._second = other
     heard: Any = SimpleNamespace(update=lambda _: None)
@@ -157,7 +157,7 @@ def test_what_may_be_missing_in_a_snapshot_is_told(
     heard = SimpleNamespace(
         keep_waiting=keep_waiting, silent=lambda: ["/tf"], update=updates.append
     )
-    monkeypatch.setattr(observe, "Ears", lambda _: heard)
+    monkeypatch.setattr(observe, "GraphListeners", lambda _: heard)
     late = SimpleNamespace(starved=lambda: [Caveat("late", True, "")])
     monkeypatch.setattr(observe, "_wait_until_settled", lambda *_: (why, late, ("/a",), ()))
     monkeypatch.setattr(observe, "complete_view", lambda *_: (["/lidar"], [SCAN]))
@@ -221,7 +221,7 @@ def test_a_shorter_look_is_enough_where_all_of_this_machine_are_known(
     wanted = {
         "short": observe.assemble.ALL_KNOWN_SECONDS, "long": observe.assemble.QUIET_SECONDS,
     }  # fmt: skip
-    assert observe._enough(session(clock)) == wanted[enough]
+    assert observe._quiet_seconds(session(clock)) == wanted[enough]
 
 
 def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -259,7 +259,7 @@ def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) ->
 def test_ears_are_those_of_transforms_and_of_headers_where_they_are_asked_for(
     headers: bool, clock: Clock
 ) -> None:
-    made: Any = look.Ears(session(clock, Request(1.0, headers=headers)))
+    made: Any = look.GraphListeners(session(clock, Request(1.0, headers=headers)))
     updated: list[Any] = []
     made.tf = SimpleNamespace(update=lambda *it: updated.append(it), silent=lambda: ["/tf", "/a"])
     made.headers = SimpleNamespace(

@@ -102,7 +102,7 @@ def test_only_what_this_process_lost_makes_a_look_longer(
         for to in (port, port - 2):
             for _ in range(2000):
                 sender.sendto(bytes(1000), ("127.0.0.1", to))
-            seconds.append(observe._enough(session(1)))
+            seconds.append(observe._quiet_seconds(session(1)))
         lost = lost_here(domain_in_use)
         other.communicate(b"\n")
     # Of the two, the other one's are not of this process.
@@ -151,7 +151,7 @@ def test_less_is_enough_where_each_port_is_announced(
     monkeypatch.delenv("ROS_DISCOVERY_SERVER", raising=False)
     for name, value in environ.items():
         monkeypatch.setenv(name, value)
-    assert observe._enough(session(*announced)) == seconds
+    assert observe._quiet_seconds(session(*announced)) == seconds
 
 
 @pytest.mark.parametrize(

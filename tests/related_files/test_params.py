@@ -404,6 +404,8 @@ def test_all_that_is_said_of_a_file(policy: tuple[str, str], source: str, found:
         (L2, NESTED.format("local_costmap"), "/robot1/local_costmap:\n  local_costmap:", ""),
         (L4, NESTED.format("local_costmap"), "/robot1/local_costmap:\n  local_costmap:", ""),
         (L4, NESTED.format("front"), "/front:\n  front_robot1:", ""),
+        # What the node would put before the robot's name.
+        (L2, section("robot_state_publisher", "frame_prefix: a/"), 'frame_prefix: ""', "MB882"),
         # It is known by its parameters.
         (L2, section("rover_base", "left_wheel_names: [left_wheel]",
                      "right_wheel_names: [right_wheel]"), "tf_frame_prefix_enable: false", ""),

@@ -165,6 +165,12 @@ CAUSES = {
         f"/planner calls /robot2/move_action {GOAL}",
         *(f"/robot{at}/base subscribes /robot{at}/cmd_vel {TWIST}" for at in "12"),
         *(f"/robot{at}/pilot publishes /robot{at}/cmd_vel {TWIST}" for at in "12")),
+    "static transforms come to nobody": ("MG307", "offers /robot1/tf_static", "(MG412)",
+        f"/robot1/rsp publishes /robot1/tf_static {TF} volatile",
+        f"/robot1/amcl subscribes /robot1/tf_static {TF} transient_local",
+        f"/robot1/amcl subscribes /robot1/scan {SCAN}",
+        f"/robot1/lidar publishes /robot1/scan {SCAN}", "frame_id laser on /robot1/scan",
+        "transform odom -> base_link on /robot1/tf by /robot1/driver"),
     "a localizer moves another frame than the base": (
         "MG415", "odom_frame_id: odom of /robot1/amcl", "",
         f"/robot1/amcl subscribes /robot1/initialpose {POSE}",

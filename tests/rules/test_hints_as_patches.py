@@ -9,9 +9,11 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 
 import pytest
+from fault_changes import nav, shared_tf
 from graph_calls import RULES, diagnose, seen_plan
 from graph_examples import read_system
 from graph_faults import FAULTS, Fault
+from healthy_systems import nav2_with_tools
 from patches import patched
 from paths import FIXTURES
 from told_faults import by_check, by_doctor, faults
@@ -93,6 +95,26 @@ def test_values_of_a_hint_mend_the_fault(fault: Fault, found: tuple[Finding, ...
         assert all(said), "the hint does not say it"
         assert all(one.name in it.hint or one.topic for one in it.settings), "nor the name"
         after = diagnose(patched(graph, (), it.settings)).findings
+        assert (it.code, it.robot, it.node) not in about(after), it
+        assert news(after, found) == [], it
+
+
+LAYOUTS = {nav: "L1", shared_tf: "L2"}
+OLDER_AND_NEWER = ("humble", "kilted", "lyrical", "rolling")
+
+
+@pytest.mark.more
+@pytest.mark.sample(16)
+@pytest.mark.parametrize("release", OLDER_AND_NEWER)
+@pytest.mark.parametrize(
+    "fault", [it for it in FAULTS if it.system in LAYOUTS], ids=lambda fault: fault.name
+)
+def test_a_hint_mends_the_fault_in_each_release(fault: Fault, release: str) -> None:
+    """Other releases have other nodes and topics beside the fault."""
+    graph = fault.change(nav2_with_tools(LAYOUTS[fault.system], release))
+    found = diagnose(graph).findings
+    for it in (one for one in found if one.remaps or one.settings):
+        after = diagnose(patched(graph, it.remaps, it.settings)).findings
         assert (it.code, it.robot, it.node) not in about(after), it
         assert news(after, found) == [], it
 

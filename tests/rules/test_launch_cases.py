@@ -155,6 +155,13 @@ def test_a_rule_for_what_the_node_calls_so_already_is_no_slip(known: Knowledge) 
         assert len(judged(known, "MR103", node)) == count
 
 
+@pytest.mark.parametrize("rule", ["right/camera_info", "right/image_rect/zstd"])
+def test_a_rule_for_what_parameters_switch_off_is_no_slip(rule: str, known: Knowledge) -> None:
+    """rtabmap has it with subscribe_stereo."""
+    names = ("rtabmap_slam", "rtabmap", "rtabmap")
+    assert judged(known, "MR103", started(*names, remappings=((rule, "x"),))) == []
+
+
 @pytest.mark.parametrize("rule", ["scan", "/scan", "~/change_state"])
 def test_a_slash_before_a_name_or_a_rule_is_no_slip(rule: str, known: Knowledge) -> None:
     """slam_toolbox asks for /scan; launch files write both."""
@@ -549,6 +556,7 @@ LOOSE, BODY = SENT.format("map -> odom"), SENT.format("base_link -> laser")
 POSED = LOOSE.replace("/a", "/start_pose") + "running: /start_pose publishes /x\n"
 MISSPELLED = SENT.format("odom -> base_lnk") + SENT.format("base_link -> front")
 WHOLE = SENT.format("odom -> base_link")
+STATES = BODY.replace("/a", "/robot_state_publisher")
 MOVED = f"<robot name='r'>{LINK}{{}}</robot>"
 GZ_DRIVE = """<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
 <left_joint>l</left_joint><right_joint>r</right_joint><topic>cmd_vel{}</topic></plugin></gazebo>"""
@@ -581,6 +589,10 @@ ODD_PLUGIN = "<gazebo><plugin name='p' filename='p'/></gazebo>"
             "warning",
         ),
         (MISSPELLED, "", "error"),
+        # Nothing is spawned: the driver of a real robot may place its base.
+        (LOOSE + STATES, "", "note"),
+        (LOOSE + STATES, MOVED.format(JOINTS), "warning"),
+        (MISSPELLED + STATES, "", "error"),
         (WHOLE + BODY, MOVED.format(GZ_DRIVE.format("")), "warning"),
         (WHOLE + BODY + SENT.format("tool -> tip"), "", "warning"),
     ],

@@ -11,7 +11,6 @@ from typing import Any
 import pytest
 from graph_examples import read_example
 
-from multibot_rewrite.planning.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.system.causes import (
     Spelled,
@@ -25,6 +24,7 @@ from multibot_rewrite.rules.system.causes import (
 from multibot_rewrite.rules.system.planned_ends import _why_besides, probable_matches, similar
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.records import COMPONENT, HOST, PLUGIN, SPAWNER
 
 FRAMES = "base, laser, front_laser, tool"
 SCAN = "/robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan"

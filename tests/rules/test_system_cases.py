@@ -271,6 +271,11 @@ ELSEWHERE = (
         (f"/own calls /door {DOOR}", f"/x serves /gate {DOOR}",
          "MG304 calls /door, which no node serves; /x serves /gate; pass the rule /door:=/gate,"
          " or start it in the namespace of the robot"),
+        # A program outside of two robots, and a node of one that runs.
+        (f"/fleet calls /robot1/drive/reset {TRIGGER}", "/robot1/drive", "/robot2/drive",
+         "MG304 calls /robot1/drive/reset, which no node serves; start the node that serves it, or"
+         " leave out what calls it"),
+        (f"/fleet calls /robot1/drive/reset {TRIGGER}", "/robot1/x", "/robot2/drive", ""),
         # What it serves itself it does not call; many have a service of such a type.
         (f"/own calls /door {TRIGGER}", "/x", ""),
         ("/robot1/a holds device port 1", "/robot1/a holds device ip 2",

@@ -141,8 +141,8 @@ def _rviz(space: str) -> Iterator[Row]:
 
 
 @cache
-def nav2_with_tools(layout: str = "L1") -> System:
-    return with_tools(started(("nav2",), layout), TWO)
+def nav2_with_tools(layout: str = "L1", release: str = "jazzy") -> System:
+    return with_tools(started(("nav2",), layout, TWO, release), TWO)
 
 
 @cache

@@ -4,7 +4,8 @@
 Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "namespace", and lists
 "publishers", "subscriptions", "services", "clients", "actions" of [name, type, QoS words],
 "frames" of [topic, static or not, [parent, child], ...], "headers" of [topic, type, frame, QoS words]:
-messages that it sends, ten a second or, latched, one; an image has a megabyte}. "bare": a node without
+messages that it sends, ten a second or, latched, one; an image has a megabyte; odometry has its two
+frames as "odom base_link"}. "bare": a node without
 what every node brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a
 process of its own. "arguments": what a command line tells the node. "parameters": those that it
 declares, "changed" those that it gets when its process is sent SIGUSR1. "state": what it answers to
@@ -221,14 +222,22 @@ def _send_frames(node: Any, topic: str, static: bool, edges: list[list[str]]) ->
 
 def _send_header(node: Any, topic: str, type_: str, frame: str, *words: str) -> None:
     message = _type(type_)()
-    message.header.frame_id = frame
+    message.header.frame_id, _, child = frame.partition(" ")
     if hasattr(message, "encoding"):
         message.data = bytes(1 << 20)
+    if child:
+        message.child_frame_id = child
+        message.pose.pose.orientation.w = 1.0
     publisher = node.create_publisher(type(message), topic, _qos(list(words)))
-    if "latched" in words:
+
+    def publish() -> None:
+        message.header.stamp = node.get_clock().now().to_msg()
         publisher.publish(message)
+
+    if "latched" in words:
+        publish()
     else:
-        node.create_timer(0.1, lambda: publisher.publish(message))
+        node.create_timer(0.1, publish)
 
 
 def _type(word: str) -> Any:

@@ -73,7 +73,9 @@ def _word(type_: str) -> str:
 def _words(end: End) -> Iterator[str]:
     if end.qos and end.qos.reliability == "BEST_EFFORT":
         yield "best_effort"
-    latched = not end.qos and end.role in (PUBLISHES, SUBSCRIBES) and end.name.endswith(LATCHED)
+    # In some layouts the robot's name is behind.
+    named = any(it in f"/{end.name}/" for it in (f"{one}/" for one in LATCHED))
+    latched = not end.qos and end.role in (PUBLISHES, SUBSCRIBES) and named
     if latched or (end.qos and end.qos.durability == "TRANSIENT_LOCAL"):
         yield "latched"
 

@@ -10,7 +10,7 @@ from graph_cases import as_planned, environment, sent, without_node
 from multibot_rewrite.base.naming import make_naming, spelled
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.planning.plan import expect
+from multibot_rewrite.planning.planned_system import expect
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.system.records import (
     CHANGING,

@@ -17,7 +17,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.knowledge.node_library import nodes_of_set
 from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.planning.plan import expect
+from multibot_rewrite.planning.planned_system import expect
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.system.records import Node, System

@@ -237,7 +237,7 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument(
         "--half",
-        choices=("work", "kept", "fresh", "third", "try", "fourth", "fifth", "sixth", "six"),
+        choices=sorted({it.half for it in chosen()}),
         default="work",
     )
     parser.add_argument("--only", nargs="*", default=[""], help="parts of the names")
@@ -257,7 +257,8 @@ def main(words: Sequence[str]) -> int:
     prefix = installed(given.sources, given.keep / "installed")
     os.environ |= {"AMENT_PREFIX_PATH": str(prefix), "PYTHONPATH": str(prefix / "site")}
     verdicts = []
-    for choice in [it for part in given.only for it in chosen(given.half) if part in it.name]:
+    half = [it for it in chosen() if it.half == given.half]
+    for choice in [it for part in given.only for it in half if part in it.name]:
         checkout = (given.folder / choice.name.replace("/", "+")).resolve()
         if given.list:
             print(choice.name, *launch_files(checkout), sep="\n  ")

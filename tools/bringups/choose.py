@@ -26,13 +26,12 @@ class Choice(NamedTuple):
     arguments: tuple[str, ...]
 
 
-def chosen(half: str, path: Path = LIST) -> list[Choice]:
-    """Return the repositories of a part of the list."""
+def chosen(path: Path = LIST) -> list[Choice]:
+    """Return the repositories of the list."""
     rows = [it.split("\t") for it in path.read_text().splitlines() if not it.startswith("#")]
-    made = [
-        Choice(name, part, release, *_words(more)) for name, part, release, more, *_ in rows[1:]
+    return [
+        Choice(name, half, release, *_words(file)) for name, half, release, file, *_ in rows[1:]
     ]
-    return [it for it in made if it.half == half]
 
 
 def _words(text: str) -> tuple[str, tuple[str, ...]]:

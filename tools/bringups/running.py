@@ -53,6 +53,8 @@ LAUNCH = os.environ.get("PYTHONPATH", "")
 INSTALLED = os.environ.get("AMENT_PREFIX_PATH", "")
 # Programs with more nodes than the one that their arguments name.
 MANY = {"ros2_control_node", "component_container", "component_container_mt"}
+# What starts controllers; the second one until Galactic.
+SPAWNERS = ("spawner", "spawner.py")
 # Where the topics of a bridge's file are among its parameters.
 BRIDGED = "\0bridged"
 # Variables that launch, Python and the referee set themselves.
@@ -346,9 +348,10 @@ def by_controller(node: Process) -> Iterator[Process]:
                 package="controller_manager", program="spawner", words=(name,), name=""
             )
         return
-    if node.program != "spawner":
+    if node.program not in SPAWNERS:
         yield node
         return
+    node = node._replace(program="spawner")
     first = next((at for at, word in enumerate(words) if word.startswith("-")), len(words))
     for name in words[:first] or [""]:
         yield node._replace(words=(name, *words[first:]))

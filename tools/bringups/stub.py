@@ -12,7 +12,15 @@ import time
 
 # They do their work and end, so that what waits for their end starts.
 ENDING = {
-    *("spawner", "unspawner", "hardware_spawner", "create", "spawn_entity.py", "gz_spawn_model"),
+    *(
+        "spawner",
+        "spawner.py",
+        "unspawner",
+        "hardware_spawner",
+        "create",
+        "spawn_entity.py",
+        "gz_spawn_model",
+    ),
     *("sleep", "wait_for_robot_description", "echo", "mkdir", "rm", "cp", "chmod", "touch", "test"),
 }
 # Longer texts of files are not kept.

@@ -193,7 +193,7 @@ class Rule(NamedTuple):
         return rule_page(self.examples or self.code)
 
     def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
-        """Return a finding of this rule; ``place`` are more fields, the column is 1 unless given."""
+        """Return a finding of this rule with the fields ``place``; a line without a column gets 1."""
         if "line" in place:
             place.setdefault("column", 1)
         level = place.pop("level", self.level)

@@ -84,7 +84,9 @@ def _level_key(selection: "Selecting", code: str) -> str:
 
 
 def grouped(findings: Iterable[Finding], names: Mapping[str, str]) -> list[Finding]:
-    """Return the findings, one for ``robots`` alike; ``names``: a robot's name or prefix -> robot."""
+    """Return the findings in order, one for all ``robots`` of those that differ only in the robot.
+
+    ``names`` maps each name of a robot in texts (its name, its prefix) to the robot."""
     return [first for first, _ in with_members(findings, names)]
 
 

@@ -46,7 +46,11 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             yield Problem(plugin, message, None, "move it into a <gazebo>", (), NOT_LOADED)
     by_ros = _by_ros(parts, tree.definitions)
     for part in parts:
-        if not part.is_known:
+        if part.kind == PLUGIN and not {"filename", "type"} & {*part.element.attrib}:
+            # sdformat plugin.sdf: a filename is required.
+            message = f"nothing loads the <plugin> {part.name!r}: it has no library"
+            yield Problem(part.element, message, None, "write its filename=", (), NOT_LOADED)
+        elif not part.is_known:
             message, hint = _message_and_hint(part, tree.definitions, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
         elif part is old:

@@ -21,7 +21,13 @@ from multibot_rewrite.description.joining.join import GivenPart, JoinedText, Out
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.sources.read import JOIN, SourceText, read_alone, read_file
+from multibot_rewrite.description.sources.read import (
+    BESIDE,
+    JOIN,
+    SourceText,
+    read_alone,
+    read_file,
+)
 from multibot_rewrite.knowledge.yaml_with_lines import (
     YamlItem,
     entries_of,
@@ -35,8 +41,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     wrong,
 )
 
-# Files beside a description, of which a part may have several.
-BESIDE = ("controllers", "moveit")
 SAMPLES = "samples"
 _KEYS = ("description", "arguments", "prefix", "name", "at", "srdf", "rviz", "one_system", *BESIDE)
 _POSE = ("x", "y", "z", "roll", "pitch", "yaw")

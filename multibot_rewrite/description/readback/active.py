@@ -90,6 +90,7 @@ _DEVICE = lazy_compile(r"/dev/\S+|v?can\d+|COM\d+")
 # What is of the computer that a driver runs on.
 DEVICE, PORT = "device", "port"
 NOTHING, UNKNOWN, NAMESPACE, TRANSFORMS = "nothing", "unknown", "namespace", "transforms"
+OF_MODEL = "model"
 # What is sent or heard where no rule reaches, on the one topic that all have: frames keep robots apart.
 TRANSFORMS_ON = "transforms on"
 # The kind of what only a namespace keeps apart.
@@ -128,9 +129,14 @@ class ActivePart(NamedTuple):
 
     @property
     def opens_something(self) -> bool:
-        """False only if all that it opens is named by values, which are compared."""
+        """Return False only if all that it opens is known: named by values, which are compared."""
+        # What is below the name that its model is spawned with is known, too, but not what a sensor
+        # without a topic opens.
         words = self.section.opens if self.section else ()
-        return not words or any(it != NOTHING and not split_opens(it).path for it in words)
+        if self.kind == SENSOR and self.section:
+            return False
+        known = (NOTHING, OF_MODEL)
+        return not words or any(it not in known and not split_opens(it).path for it in words)
 
     @property
     def is_apart(self) -> bool:

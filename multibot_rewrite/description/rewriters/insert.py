@@ -25,7 +25,7 @@ from multibot_rewrite.description.rewriters.plugin_definitions import (
     split_path,
     split_step,
 )
-from multibot_rewrite.description.rewriters.remap_rules import named, ros_home, rules_in
+from multibot_rewrite.description.rewriters.remap_rules import named, relative, ros_home, rules_in
 from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT, respelled, spell_default
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.knowledge.controller_ways import controller_way
@@ -68,6 +68,7 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
         found = list(_of_defaults(host, section, declared, naming, hidden))
         if any(site.path == "ros/remapping" for site in section.sites):
             found += _remaps(host, section, naming, home)
+            found += _relative(host, section, naming, home)
         if naming.separators:
             found += _ros_1_namespaces(host, section, naming)
         if section.helper and naming.separators and naming.topics != NAMESPACE:
@@ -235,6 +236,20 @@ def _remaps(
         of_controllers = section.process_wide and topic in section.publishes
         made = Insertion(parent, wrap, xml, "topic", topic, target)
         yield made._replace(of_controllers=of_controllers)
+
+
+def _relative(
+    host: etree._Element, section: PluginDefinition, naming: Naming, home: etree._Element | None
+) -> Iterator[Insertion]:
+    """Yield a rule without the namespace in front of each that has it. Of a process only the rules of
+    its first robot count, so they have to be the same for all robots."""
+    rules = rules_in(home) if home is not None and naming.topics == NAMESPACE else []
+    there = {it.source for it in rules}
+    for it in rules:
+        old, _, new = relative(it, host, section, naming).partition(":=")
+        if old and home is not None and old not in there:
+            made = Insertion(home, "", f"<remapping>{old}:={new}</remapping>", "topic", old, new)
+            yield made._replace(of_controllers=True)
 
 
 def _remap_target(topic: str, naming: Naming) -> str:

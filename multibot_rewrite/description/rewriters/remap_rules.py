@@ -14,7 +14,7 @@ from lxml import etree
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.model import Claim, UsageError
-from multibot_rewrite.base.naming import TF_TOPICS, TOPIC_KINDS
+from multibot_rewrite.base.naming import TF_TOPICS, TOPIC_KINDS, Naming
 from multibot_rewrite.base.rosnames import RemapRule, expand, remapped_node, split_remap
 from multibot_rewrite.description.rewriters.forms import NamePart, remap
 from multibot_rewrite.description.rewriters.own_defaults import filled
@@ -116,6 +116,21 @@ def named(host: etree._Element, section: PluginDefinition) -> tuple[str, str]:
         return remapped_node(name, namespace, rules_in(home))
     except UsageError:  # a placeholder, or what rcl refuses
         return name, namespace
+
+
+def relative(
+    rule: RemapRule, host: etree._Element, section: PluginDefinition, naming: Naming
+) -> str:
+    """Return an absolute rule of a whole process without the plugin's namespace, for all robots alike;
+    nothing if it is not below that, or if names of it stay absolute."""
+    wide = section.process_wide and not (section.helper or rule.node or rule.scheme)
+    namespace = named(host, section)[1].strip("/")
+    root = f"/{namespace}/" if namespace else "/"
+    names = (rule.source, rule.target)
+    stay = ABSOLUTE.intersection(names) or rule.target.strip("/") in naming.shared_topics
+    if not wide or stay or not all(it.startswith(root) for it in names):
+        return ""
+    return ":=".join(it.removeprefix(root) for it in names)
 
 
 def _flag(argument: etree._Element) -> str:

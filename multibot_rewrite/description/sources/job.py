@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """What one rewrite works on: everything it depends on but the robots, read once."""
 
+import re
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from functools import cache
 from typing import NamedTuple
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import Naming, OwnNames
+from multibot_rewrite.base.naming import MODEL, SEPARATORS, Naming, OwnNames
 from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
@@ -32,12 +34,21 @@ from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.sources.world_systems import set_aside
 from multibot_rewrite.description.steps.apply import cut, fill
-from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect, declarations
+from multibot_rewrite.description.steps.collect import (
+    NOTHING,
+    Inventory,
+    collect,
+    declarations,
+    values_with_own_model,
+)
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.description.steps.plan import make_plan
 
 # What an SRDF names of its URDF.
 PARTS = frozenset({"link", "joint"})
+_MODEL = lazy_compile(rb"""<(?:robot|model)\s[^>]*?\bname\s*=\s*["']([^"']+)""")
+# A value that may name the model, as its declaration does.
+_IN_VALUE = rb"""(?:>\s*|["'/])%s(?:\s*<|["'/]|::)"""
 
 
 class FilesRead(NamedTuple):
@@ -183,12 +194,28 @@ def reader(
         tree = builtin_tree(definitions, said.release)
         ros = ROS_2 if release else ros_shown(own.data, own.file, tree)
         job = Job(own.data, name, naming, definitions, pair, *said, ros, read=found)
+        job = job._replace(naming=_naming_of(job))
         if not aside:
             return job
         data, left = set_aside(job.data, job.file, job.tree)
         return job._replace(data=data, aside=left)
 
     return lambda args: read(frozenset(args.items()))
+
+
+def _naming_of(job: Job) -> Naming:
+    """Return the naming of a description. A layout that keeps models renames them if the description
+    has its own in a value: a plugin looks for it by the name that it is spawned with."""
+    naming = job.naming
+    name = _MODEL.search(job.urdf[0] if job.urdf else job.data)
+    found = name and re.findall(_IN_VALUE % re.escape(name[1]), name.string)
+    if naming.layout.renames_models or not found or len(found) == 1:
+        return naming
+    layout = naming.layout._replace(models=True)
+    separators = {**naming.separators, MODEL: SEPARATORS[MODEL]}
+    renamed = naming._replace(layout=layout, separators=separators)
+    described = job._replace(naming=renamed).inventories[-1]
+    return renamed if any(values_with_own_model(described)) else naming
 
 
 def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:

@@ -17,6 +17,8 @@ Source = str | bytes | os.PathLike[str]
 XACRO = ".xacro"
 # A list of parts, as YAML.
 JOIN = ".join"
+# Files beside a description, of which a joined part may have several.
+BESIDE = ("controllers", "moveit")
 _SPACE = lazy_compile(rb"""xmlns:([\w.-]+)\s*=\s*["'][^"'<>]*/xacro/?["']""")
 
 

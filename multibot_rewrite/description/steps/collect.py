@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes the inventory of a document: claimed values, names in them, declarations, plugins."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from lxml import etree
@@ -56,6 +57,12 @@ class Inventory(NamedTuple):
         return [(it.element, it.node.section) for it in self.hosts if it.node.section is not None]
 
     @property
+    def model(self) -> str:
+        """Return the name of the model: that of <robot>, in SDF of the first <model>."""
+        root = self.document.root
+        return str(next(root.iter("robot", "model"), root).get("name", ""))
+
+    @property
     def topics_in_full(self) -> frozenset[str]:
         """The topics that no ROS namespace reaches, as those of a simulated sensor."""
         pairs = zip(self.claims, self.names, strict=True)
@@ -89,6 +96,15 @@ def collect(
     rules = {**rules, **names_in_topics(of_gz, declared, layout.renames_models)}
     apart = layout.at_run_time
     return inventory._replace(names=renaming.resolved_names(claims, declared, apart, rules))
+
+
+def values_with_own_model(inventory: Inventory) -> Iterator[Claim]:
+    """Yield the values that use the name of the description's own model."""
+    model = inventory.model
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        used = names if claim.site.role == "uses" else ()
+        if any(it.kind == naming.MODEL and it.text == model for it in used):
+            yield claim
 
 
 def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], list[Host]]:

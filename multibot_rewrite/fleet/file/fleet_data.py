@@ -20,9 +20,8 @@ from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.description.joining.from_file import BESIDE
 from multibot_rewrite.description.sources.own_names import filled
-from multibot_rewrite.description.sources.read import is_xacro, read_file
+from multibot_rewrite.description.sources.read import BESIDE, is_xacro, read_file
 from multibot_rewrite.fleet.file.checked_yaml import Path, text_checked
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
 

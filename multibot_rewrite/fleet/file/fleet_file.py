@@ -163,8 +163,8 @@ def _check_robots_differ(robots: Sequence[RobotSpec]) -> None:
     for what in ("name", "namespace", "tag", "model", "pose"):
         seen: dict[object, RobotSpec] = {}
         for robot in robots:
-            value = getattr(robot, what)
-            first = seen.setdefault(value, robot) if value is not None else robot
+            value = getattr(robot, what) or robot.name
+            first = seen.setdefault(value, robot)
             if first is robot:
                 continue
             word = {"tag": "prefix or postfix"}.get(what, what)

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import NAMESPACE, Naming
-from multibot_rewrite.description.joining.from_file import part_of, parts_of
 from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import JOIN as LIST
@@ -47,7 +46,8 @@ class RobotSpec(NamedTuple):
     """One robot of a fleet file; paths are absolute or relative to the working directory.
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
-    ``pose`` is None if the file has none. ``related_files`` maps a kind of ``KINDS`` to files; a kind
+    ``pose`` is None if the file has none; ``model`` is empty until the description is rewritten if
+    the file has none. ``related_files`` maps a kind of ``KINDS`` to files; a kind
     without files is not there. ``line``
     is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameters
     in the fleet file itself, parameter files in which a launch replaces something, and what is made of
@@ -166,7 +166,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         given_arguments(data, own, [description, *(str(it.description) for it in parts)], place),
         namespace,
         str(own.get(side, name)),
-        own.get("model", name),
+        own.get("model", ""),
         _pose(own, place),
         _colour(own, place),
         node_sets,
@@ -228,7 +228,7 @@ _MADE = "robot.urdf"
 
 
 def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
-    """Return the description of a robot by number, and the parts that it is joined from."""
+    """Return a robot's description and the parts that it is joined from; raises InputError."""
     # A list of parts in the fleet file gets a path as if it were a file below.
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]
@@ -238,7 +238,12 @@ def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
     given = own if JOIN in own or DESCRIPTION in own else data
     if JOIN not in given:
         path = given.get(DESCRIPTION, "")
-        return path, parts_of(path) if path.endswith(LIST) else ()
+        if not path.endswith(LIST):
+            return path, ()
+    from multibot_rewrite.description.joining.from_file import part_of, parts_of  # few are joined
+
+    if JOIN not in given:
+        return path, parts_of(path)
     like = next(it["name"] for it in data["robots"] if it.get(JOIN) == own.get(JOIN))
     try:
         parts = tuple(map(part_of, given[JOIN]))

@@ -33,7 +33,6 @@ from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.conditions import UNSENT, readable
-from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
@@ -44,7 +43,7 @@ from multibot_rewrite.knowledge.programs import (
     program_of,
     started_as,
 )
-from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts, names_its_process
 from multibot_rewrite.planning.domain_bridge import bridge_name, bridge_path
 from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.planning.start import (
@@ -56,7 +55,7 @@ from multibot_rewrite.planning.start import (
     spawner_of,
     start_of,
 )
-from multibot_rewrite.planning.ways import COMPONENT, SPAWNER, Started
+from multibot_rewrite.planning.ways import Started
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.producers.launch.bridges import services_in
@@ -69,12 +68,10 @@ from multibot_rewrite.producers.launch.handed_on import (
 )
 from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
-from multibot_rewrite.system.words import START_POSE
+from multibot_rewrite.system.records import COMPONENT, PUBLISHES, SPAWNER, TOPIC
+from multibot_rewrite.system.words import START_POSE, last_word
 
 STATE = "robot_state_publisher"
-# Their words name files of the robot.
-_WORDS_OF_BUILD = (STATE, CARTOGRAPHER)
 # What launch files themselves set, by robot and node.
 Values: TypeAlias = Mapping[tuple[str, str], Mapping[str, Any]]
 # Started by hand, or once for all robots.
@@ -98,18 +95,32 @@ _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 
 
 def of_robot(
-    one: FleetPlan, files: Mapping[str, bool], bridged: Collection[str], values: Values
+    one: FleetPlan,
+    files: Mapping[str, bool],
+    bridged: Collection[str],
+    values: Values,
+    texts: Mapping[str, bytes],
 ) -> RobotStarts:
     """Return what the one robot of a plan runs.
 
     ``files`` are the paths that the build writes, each with whether it has launch substitutions;
-    ``bridged`` the topics from a simulator; ``values`` what launch files themselves set."""
+    ``bridged`` the topics from a simulator; ``values`` what launch files themselves set; ``texts``
+    what the build writes."""
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
     readers = dict(_readers(one, robot))
     given = _Given(one, robot, names, facts, files, bridged, values, readers, {})
     given = given._replace(left=dict(_not_started(given)))
+    # The nodes that are started, and those in their processes.
+    started = tuple(
+        names.full_name(it)
+        for name in given.running
+        for it in (name, *(inner for inner in names.inside(name) if inner not in given.left))
+    )
+    words = (b"*", *(last_word(it).encode() for it in started))
+    params = [it for it in params_paths(robot, files) if any(word in texts[it] for word in words)]
+    given = given._replace(params=params)
     processes = (_start_of(given, it) for it in given.running if names.started[it].way != COMPONENT)
     relayed = [it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file)]
     launched = sorted((*processes, *_processes(one, robot)), key=lambda it: it.number)
@@ -131,23 +142,19 @@ def of_robot(
         robot.spec.name,
         os.path.basename(robot.spec.description),
         f"namespace {min(spaces, key=len)}" if spaces else "the root namespace",
-        tuple(File(it, files[it]) for it in params_paths(robot, files)),
+        tuple(File(it, files[it]) for it in params),
         starts,
         (*given.left.items(), *idle),
         not_bridged(robot.spec.name) if any(it.needs for it in relayed) else "",
-        # The nodes that are started, and those in their processes.
-        tuple(
-            names.full_name(it)
-            for name in given.running
-            for it in (name, *(inner for inner in names.inside(name) if inner not in given.left))
-        ),
+        started,
     )
 
 
 class _Given(NamedTuple):
     """What is known of a robot; ``left`` are nodes that are not started, with the reason.
 
-    ``readers`` are the nodes that get the parameter files of launch files."""
+    ``readers`` are the nodes that get the parameter files of launch files, ``params`` the parameter
+    files with a section for a node that is started."""
 
     plan: FleetPlan
     robot: RewrittenRobot
@@ -158,6 +165,7 @@ class _Given(NamedTuple):
     values: Values
     readers: Mapping[str, Collection[str]]
     left: Mapping[str, str]
+    params: Sequence[str] = ()
 
     @property
     def release(self) -> str:
@@ -231,7 +239,10 @@ def _start_of(given: _Given, name: str) -> Start:
     lua = given.robot.spec.related_files.get("lua", ())
     if facts.kind == CARTOGRAPHER and (lua or facts.usual):
         folder, file = os.path.split(path_for(given.robot, *lua[:1] or (OPTIONS,)))
-        words = (*words, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
+        # In place of the vendor's file.
+        flags = {at + more for at, it in enumerate(words) if it in LUA_FLAGS for more in (0, 1)}
+        kept = (it for at, it in enumerate(words) if at not in flags)
+        words = (*kept, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
     return made._replace(
         arguments=tuple(words),
         components=tuple(
@@ -281,7 +292,7 @@ def _with_launch_settings(plan: FleetPlan, robot: RewrittenRobot, it: Start, nam
         package=package,
         executable="" if it.plugin else program,
         plugin=program if it.plugin else "",
-        arguments=it.arguments if own.kind in _WORDS_OF_BUILD else own.arguments,
+        arguments=it.arguments if own.kind == STATE else own.arguments,
         environment=own.environment,
         process=own.process,
         number=own.number,
@@ -390,7 +401,7 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     is_launched = name in given.plan.evidence_of(robot).handed_on
     files = [
         File(it, given.files[it])
-        for it in params_paths(robot, given.files)
+        for it in (params_paths(robot, given.files) if is_launched else given.params)
         # Of those that launch files name a launched node has its own.
         if not is_launched or name in given.readers.get(it, (name,))
     ]

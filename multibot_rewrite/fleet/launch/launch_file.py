@@ -49,7 +49,8 @@ def fleet_starts(
     found = ((it.path, [known for known, _ in _SUBSTITUTION.findall(it.data)]) for it in files)
     paths = {path: bool(known) and all(known) for path, known in found}
     values = launched_values(plan).values
-    robots = [launch_actions.of_robot(one, paths, bridged, values) for one in each]
+    texts = {it.path: it.data for it in files}
+    robots = [launch_actions.of_robot(one, paths, bridged, values, texts) for one in each]
     environment, robots = _environment(plan, robots)
     simulators = spawn.simulators(plan)
     clocks = {it.spec.name: it.spec.use_sim_time for it in plan.robots}

@@ -19,7 +19,8 @@ from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
 from multibot_rewrite.knowledge.conditions import readable
 from multibot_rewrite.planning.start import Start, shell_line
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER
-from multibot_rewrite.planning.ways import SPAWNER, started
+from multibot_rewrite.planning.ways import started
+from multibot_rewrite.system.records import SPAWNER
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
 TAKING = "\nThe vendor's launch files take its files, in the folder of this file:\n\n```sh\n"

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
@@ -31,13 +31,11 @@ from multibot_rewrite.fleet.outputs.output_file import (
     own_yaml,
     path_for,
 )
-from multibot_rewrite.fleet.robots.joined_robots import Arm, joined_arms
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
 from multibot_rewrite.planning.start import File, Start, shell_line
 from multibot_rewrite.planning.ways import started
 from multibot_rewrite.related_files.engine import splices_of
-from multibot_rewrite.related_files.joined import PartMoveit, joined_moveit
 from multibot_rewrite.related_files.moveit.file_kind import (
     ABOVE,
     EMPTY,
@@ -53,6 +51,9 @@ from multibot_rewrite.related_files.names.rename_map import spell
 from multibot_rewrite.related_files.rviz.read_config import every, fixed_frame, read_config, targets
 from multibot_rewrite.related_files.rviz.rewrite import RvizText
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml, replaced, spliced
+
+if TYPE_CHECKING:
+    from multibot_rewrite.related_files.joined import PartMoveit
 
 FILE = "moveit_parameters.yaml"
 # Package and executable of the nodes that take it, by their names in the node set.
@@ -209,6 +210,9 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
     cell = plan.file.cell
     if cell is None:
         return
+    from multibot_rewrite.fleet.robots.joined_robots import Arm, joined_arms  # few have a cell
+    from multibot_rewrite.related_files.joined import joined_moveit
+
     made = {it.path: it.data for it in files}
     tree = builtin_tree(plan.file.definitions, plan.file.distro, ROS_2)
     world = world_of(plan.file, plan.fleet.naming)
@@ -252,6 +256,8 @@ def _moveit_of_arm(
     plan: FleetPlan, robot: RewrittenRobot, made: Mapping[str, bytes]
 ) -> Iterator[PartMoveit]:
     """Yield an arm's MoveIt files as a move_group for all needs them; servo runs for each arm."""
+    from multibot_rewrite.related_files.joined import PartMoveit
+
     for it in robot.spec.related_files.get("moveit", ()):
         path = path_for(robot, it)
         document = read_yaml(made[path], path)

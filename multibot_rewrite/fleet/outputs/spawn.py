@@ -11,13 +11,16 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.description.rewriters.text import text_at, text_of
+from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import CLASSIC_PLUGIN, RewrittenRobot, at_robot
-from multibot_rewrite.fleet.robots.simulators import is_simulated, without_mass
-from multibot_rewrite.planning.bridged_topics import bridged_topics, model_name
+from multibot_rewrite.fleet.robots.simulators import (
+    is_simulated,
+    lookups_of_model,
+    without_mass,
+)
 from multibot_rewrite.planning.start import File, Start, shell_line
 from multibot_rewrite.producers.launch.programs import program_of, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
@@ -178,34 +181,12 @@ def _ros_1_plugins(robot: RewrittenRobot) -> Iterator[Finding]:
         yield at_robot(PLUGIN_OF_ROS_1, robot, message, hint)
 
 
-def _plugin_topics(robot: RewrittenRobot) -> set[str]:
-    """Return the gz topics that the robot's plugins make, as the model is spawned."""
-    spec, inventory = robot.spec, robot.member.inventory
-    names = {spec.namespace: spec.model}
-    bridged, _ = bridged_topics({spec.namespace: inventory}, robot.topics.naming, names)
-    return {it.gz for it in bridged}
-
-
 def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
     """Yield the first plugin that names the robot's model otherwise than it is spawned."""
-    inventory = robot.member.inventory
-    own = model_name(inventory)
-    if own == robot.spec.model:
+    own = robot.member.inventory.model
+    for claim in lookups_of_model(robot) if own != robot.spec.model else ():
+        who = f"robot {robot.spec.name!r} is spawned as {robot.spec.model!r}"
+        message = f"{who}, <{claim.element.tag}> looks for the model {own!r}"
+        hint = f"write model: {own} for it, or leave model: out"
+        yield at_robot(MODEL_OF_OTHER_NAME, robot, message, hint)
         return
-    made, plugins = _plugin_topics(robot), inventory.document.root.iter("plugin")
-    fixed = made.intersection(text_of(it) for plugin in plugins for it in plugin.iter())
-    for claim, names in zip(inventory.claims, inventory.names, strict=True):
-        _, model, rest = claim.value.partition(f"/model/{own}/")
-        # Where models keep their names, no name is found in the topics of systems.
-        made_of_it = bool(model) and f"/model/{robot.spec.model}/{rest}" in made
-        is_used = any(it.kind == "model" and it.text == own for it in names)
-        if claim.site.role == "uses" and (is_used or made_of_it):
-            if text_of(claim.element) in fixed:
-                continue
-            who = f"robot {robot.spec.name!r} is spawned as {robot.spec.model!r}"
-            message = f"{who}, <{claim.element.tag}> looks for the model {own!r}"
-            hint = f"write model: {own} for it"
-            if "model" not in robot.names.naming.separators:
-                hint = "use layout: both, which renames the model, and give its name with model:"
-            yield at_robot(MODEL_OF_OTHER_NAME, robot, message, hint)
-            return

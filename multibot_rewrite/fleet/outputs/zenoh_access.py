@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE, SENT_BY_ANY_NODE
 from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE, beyond
-from multibot_rewrite.producers.zenoh.tokens import SPACE
+from multibot_rewrite.producers.zenoh import SPACE
 from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import (
     ACTION,

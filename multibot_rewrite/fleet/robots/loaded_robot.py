@@ -13,6 +13,7 @@ from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -26,7 +27,6 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import nodes_of_sets
 from multibot_rewrite.knowledge.node_sets import is_apart
 from multibot_rewrite.knowledge.programs import Program, started_as
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.related_files.names.node_topics import fleet_topics, robot_topic
 from multibot_rewrite.related_files.names.rename_map import KINDS, spell

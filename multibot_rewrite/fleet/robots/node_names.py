@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.planning.records import Run, Table
-from multibot_rewrite.planning.ways import COMPONENT, SPAWNER, Started, launch_arguments, started
-from multibot_rewrite.system.records import CALLS
+from multibot_rewrite.planning.ways import Started, launch_arguments, started
+from multibot_rewrite.system.records import CALLS, COMPONENT, SPAWNER
 
 # What a lifecycle manager calls of each node that it manages (nav2_util lifecycle_service_client.cpp).
 CHANGE_STATE = "change_state"

@@ -134,7 +134,7 @@ def robot_nodes(
     known = _known_nodes(own, file)
     node_set = tuple(it for it in nodes_of_sets(spec, file) if _is_needed(it, spec, member))
     if spec.simulator != REAL:
-        node_set = (*node_set, *_manager_in_plugin(node_set, own, member, file.distro))
+        node_set = (*node_set, *_manager_in_plugin(node_set, own, member, spec, file.distro))
     known = known_here(known, spec.launch, spec.words[0], file.distro)
     launched = launched_robot(node_set, spec.launch, known, spec.words, parameters, file.distro)
     launched = without_bridges(launched) if launched else None
@@ -279,8 +279,9 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
         # On Humble it has the name of Ignition, too.
         loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}
         return library_key(it.plugin) in loaded
-    of_one = it.name == BRIDGE_NODE and not it.shared
-    return not of_one or bool(spec.related_files.get("bridge")) or is_bridged(member.inventory)
+    if it.name != BRIDGE_NODE or spec.related_files.get("bridge"):
+        return True
+    return spec.simulator != REAL and (it.shared or is_bridged(member.inventory))
 
 
 def _srdf_nodes(
@@ -308,19 +309,28 @@ def nodes_of_sets(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
 
 
 def _manager_in_plugin(
-    node_set: Iterable[NodeFacts], own: Iterable[Run], member: Member, release: str
+    node_set: Iterable[NodeFacts],
+    own: Iterable[Run],
+    member: Member,
+    spec: RobotSpec,
+    release: str,
 ) -> Iterator[NodeFacts]:
     """Yield the controller manager of a plugin, as the plugin's node set has it."""
-    # If a file sets it, or a node set has controllers and no manager.
+    # If a file sets it, or a node set has controllers and no manager. None for a launch file where
+    # the plugin has a namespace of its own: the description's reading has that manager.
     nodes = tuple(node_set)
-    if any(it.name == MANAGER for it in nodes):
+    made = {it.manager for it in member.reading.nodes} - {""}
+    elsewhere = made and not any(it.endswith(f"/{spec.namespace}/{MANAGER}") for it in made)
+    if any(it.name == MANAGER for it in nodes) or (spec.launch and elsewhere):
         return
     wide = (it.section for it in member.reading.nodes if it.section.process_wide)
     names = {name for it in wide for name in it.names}
     library = built_in(release)
     if any(it.host == MANAGER for it in nodes) or any(it.fact.known == MANAGER for it in own):
-        made = (it for name in library.node_sets for it in nodes_of_set(library, name) if it.plugin)
-        yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
+        every = (
+            it for name in library.node_sets for it in nodes_of_set(library, name) if it.plugin
+        )
+        yield from [it for it in every if it.name == MANAGER and it.plugin in names][:1]
 
 
 def related_file_nodes(

@@ -12,7 +12,7 @@ from lxml import etree
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
-from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.model import Claim, Edit
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.hazards import LEFT, world_systems
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
@@ -23,6 +23,7 @@ from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.steps.apply import Spans, cut
+from multibot_rewrite.description.steps.collect import values_with_own_model
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import (
@@ -127,6 +128,24 @@ def without_mass(robot: RewrittenRobot) -> Iterator[Finding]:
     message = f"robot {robot.spec.name!r} has no mass: the launch file does not spawn it"
     hint = "write simulator: none for a real robot; else add <inertial> to its links"
     yield at_robot(SIMULATED_OR_REAL, robot, message, hint)
+
+
+def lookups_of_model(robot: RewrittenRobot) -> Iterator[Claim]:
+    """Yield the values that use the robot's own model, but for topics that its plugins are given in
+    full: these do not depend on the name that it is spawned with."""
+    inventory = robot.member.inventory
+    if found := [*values_with_own_model(inventory)]:
+        bridged, _ = bridged_topics({"": inventory}, robot.topics.naming)
+        given = {it.gz for it in bridged}
+        yield from (it for it in found if it.value.strip() not in given)
+
+
+def with_model(robot: RewrittenRobot) -> RewrittenRobot:
+    """Return the robot with the name that it is spawned with: that of the fleet file, else its own
+    model's where a plugin looks for that, else the robot's."""
+    spec = robot.spec
+    own = spec.model or (any(lookups_of_model(robot)) and robot.member.inventory.model)
+    return robot._replace(spec=spec._replace(model=own or spec.name))
 
 
 UNREAD_DRIVE = declare("MF844", "drive-of-unknown-code", NOTE, formats=("fleet",))

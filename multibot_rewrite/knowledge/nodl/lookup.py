@@ -169,6 +169,7 @@ def load(path: str, interfaces: Interfaces) -> Document:
 
 
 def _with_included(path: str, interfaces: Interfaces, seen: dict[str, str]) -> Iterator[Document]:
+    """Yield a document and those that it includes; raises UsageError."""
     try:
         document = parse(read_text(path), path)
     except OSError as error:
@@ -293,6 +294,7 @@ def _frames(node: NodeFacts, parameters: Iterable[Parameter]) -> Iterator[FrameP
 
 
 def _key_of(end: Endpoint, node: str) -> _Slot:
+    """Return kind, role and full name of an endpoint of this node."""
     above, _, own = node.rpartition("/")
     name = end.name if "<" in end.name else expand(end.name, f"/{above}", own)
     return _Slot(end.kind, end.role, name)

@@ -13,7 +13,7 @@ from multibot_rewrite.base.bounded import load_json, read_bytes
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.outside import Asked, Question, answer_now, digest
-from multibot_rewrite.description.rewriters.plugin_definitions.installed import installed
+from multibot_rewrite.description.rewriters.installed import installed
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.version import __version__
 

@@ -44,8 +44,11 @@ def after_comments(
     sources: Mapping[str, bytes],
     settings: Settings,
 ) -> list[Finding]:
-    """Return the findings that no comment suppresses, and those about comments of the first source."""
-    comments = [it for file, source in sources.items() for it in _comments(file, source)]
+    """Return the findings that no comment suppresses, and those about comments.
+
+    ``codes`` are all that were found. The first of ``sources`` is the file that is linted, the
+    others are those it includes."""
+    comments = [it for file, source in sources.items() for it in _lint_comments(file, source)]
     left, used = _unsuppressed(findings, comments)
     faults = ((it, fault) for it in comments for fault in it.it.faults)
     broken = (
@@ -59,8 +62,7 @@ def after_comments(
     return left
 
 
-def _comments(file: str, source: bytes) -> Iterator[Comment]:
-    """Yield the comments of a file that are for the lint."""
+def _lint_comments(file: str, source: bytes) -> Iterator[Comment]:
     for it in read_directives(source) if MARK in source else ():
         first, last = (locate(source, offset)[0] for offset in it.lines)
         span = it.element and (locate(source, it.element[0]), locate(source, it.element[1]))
@@ -113,7 +115,7 @@ def _with_level(found: Iterable[Finding], code: str, settings: Settings) -> Iter
 
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:
-    """Return whether an expansion of its file has what the comment is about, whatever is set."""
+    """Return whether every expansion of the comment's file has what the comment is about."""
     if comment.file in settings.included:
         return False
     if not comment.file.endswith(".xacro"):

@@ -26,7 +26,6 @@ class KeyValue(NamedTuple):
 
 
 def _texts(given: KeyValue) -> tuple[str, ...]:
-    """Return a list of texts; raises UsageError for another value."""
     if not isinstance(given.value, list):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a list of texts")
     wrong = next((it for it in given.value if not isinstance(it, str)), None)
@@ -52,7 +51,6 @@ def _table_of(given: KeyValue) -> Iterator[tuple[str, KeyValue]]:
 
 
 def _codes(given: KeyValue) -> tuple[str, ...]:
-    """Return the codes of rules that a list names."""
     return find_lint_codes(_texts(given), given.where)
 
 
@@ -98,16 +96,14 @@ def _path_from_folder(given: KeyValue) -> str:
     return os.path.join(given.folder, _non_empty_text(given))
 
 
-def _file(given: KeyValue) -> str:
-    """Return the path of a file; raises UsageError where there is none."""
+def _existing_file(given: KeyValue) -> str:
     path = _path_from_folder(given)
     if not os.path.isfile(path):
         raise UsageError(f"{given.where}: no file {given.value!r} in {given.folder}")
     return path
 
 
-def _folders(given: KeyValue) -> tuple[str, ...]:
-    """Return the paths of folders; raises UsageError where there is none."""
+def _existing_folders(given: KeyValue) -> tuple[str, ...]:
     paths = tuple(os.path.join(given.folder, it) for it in _texts(given))
     wrong = next((it for it in paths if not os.path.isdir(it)), None)
     if wrong is not None:
@@ -116,7 +112,6 @@ def _folders(given: KeyValue) -> tuple[str, ...]:
 
 
 def _seconds(given: KeyValue) -> float:
-    """Return a number of seconds, of at most a day; raises UsageError for another value."""
     value = given.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise UsageError(f"{given.where} is {type_name(value)}, write a number of seconds")
@@ -178,9 +173,9 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "shared-frames": _texts,
     "shared-topics": _texts,
     "targets": targets,
-    "roots": _folders,
+    "roots": _existing_folders,
     "distro": partial(_allowed_text, allowed=RELEASES),
-    "urdf": _file,
+    "urdf": _existing_file,
     "definitions": lambda it: listed_files(*it),
     "xacro": _argument_sets,
     "exclude": _excluded_patterns,

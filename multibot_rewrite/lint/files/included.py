@@ -70,7 +70,6 @@ def _other_xacros(paths: Sequence[str]) -> Iterator[str]:
 
 
 def _is_xacro_file(path: str) -> bool:
-    """Return whether a path is that of a xacro file, and no pipe."""
     # A pipe would never end.
     return path.endswith(".xacro") and is_file(path)
 

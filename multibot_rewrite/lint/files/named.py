@@ -46,7 +46,6 @@ def descriptions_below(folder: str) -> list[str]:
 
 
 def _files_below(folder: str, deep: int) -> Iterator[str]:
-    """Yield the URDF and xacro files in a folder and the folders in it, ``deep`` levels down."""
     inner = []
     for name in sorted(entries(folder)):
         if name.endswith((".urdf", ".xacro")):

@@ -79,7 +79,7 @@ def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
 
 
 def _candidates(path: str, name: str, settings: Settings) -> list[str]:
-    """Return files with that robot's name, the nearest first, else with the SRDF's file name."""
+    """Return files with that robot's name, the nearest first, else with the file name of the SRDF."""
     folder = os.path.dirname(os.path.abspath(path))
     named = [urdf for robot, urdf in settings.urdfs if robot == name]
     if named:
@@ -100,7 +100,6 @@ def _files_near(folder: str) -> Iterator[str]:
 
 
 def _stem(path: str) -> str:
-    """Return the file name up to the first dot."""
     return os.path.basename(path).partition(".")[0]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which nodes of a graph to learn, without tools, and which of their ends are one in their code."""
+"""Which nodes of a graph to learn, and which of their ends are one in the code: an action, an image."""
 
 import re
 from collections import Counter, defaultdict
@@ -28,9 +28,10 @@ class Helpers(NamedTuple):
 
 
 def choose_nodes(graph: System, names: Sequence[str], namespace: str) -> tuple[str, ...]:
-    """Return the sorted full names of the nodes to learn: ``names``, or all below ``namespace``.
+    """Return the full names of the nodes to learn, sorted: ``names``, or all below ``namespace``.
 
-    Raises UsageError for a node that is not there, not below it, or there twice, and for no node."""
+    Raises UsageError for a node that is not in the graph, not below the namespace, or in the graph
+    twice, and if there is no node at all."""
     base = namespace_prefix(namespace)
     times = Counter(node.name for node in graph.nodes)
     for name in names:

@@ -84,7 +84,10 @@ class _SeenPlace(NamedTuple):
 def learn(
     graph: System, names: Sequence[str], namespace: str, library: NodeLibrary
 ) -> tuple[LearnedNode, ...]:
-    """Return facts of nodes below the robot's ``namespace``; UsageError for an impossible endpoint."""
+    """Return facts of the nodes ``names`` below the robot's ``namespace``.
+
+    ``library`` has the known parts, and the names in the code of known nodes. Raises UsageError for
+    an endpoint that no node can have."""
     base = namespace_prefix(namespace)
     ends = lists_by_key((end.node, end) for end in graph.ends)
     helpers = helpers_of(graph, names)

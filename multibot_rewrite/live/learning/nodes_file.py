@@ -33,8 +33,10 @@ _NO_WRAP = 1 << 30
 
 
 def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary) -> str:
-    """Return the text of a file with the nodes and a node set; raises ProofError if not read back."""
-    text = "".join(f"{line}\n" for line in _lines(learned, node_set))
+    """Return the text of a file with the nodes and one node set of them.
+
+    Raises ProofError if reading it does not give the same nodes."""
+    text = "".join(f"{line}\n" for line in _file_lines(learned, node_set))
     facts = tuple(node.facts for node in learned)
     try:
         found = nodes_of_set(extend(library, text, node_set), node_set)
@@ -48,15 +50,14 @@ def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary)
     return text
 
 
-def _lines(learned: Sequence[LearnedNode], node_set: str) -> Iterator[str]:
-    """Yield the lines of the file of nodes."""
+def _file_lines(learned: Sequence[LearnedNode], node_set: str) -> Iterator[str]:
     yield from HEAD.splitlines()
-    yield from _comment(f"Of: {' '.join(node.seen for node in learned)}", "")
+    yield from _comment_lines(f"Of: {' '.join(node.seen for node in learned)}", "")
     yield from ("", "nodes:")
     for node in learned:
         facts = node.facts
         for remark in node.remarks:
-            yield from _comment(remark, "  ")
+            yield from _comment_lines(remark, "  ")
         yield f"  {_scalar(facts.name)}:"
         yield f"    note: {_scalar(facts.note)}"
         yield from ["    apart: true"] * facts.apart
@@ -102,7 +103,7 @@ def _flow(value: object) -> str:
     return str(dumped).rstrip("\n")
 
 
-def _comment(text: str, indent: str) -> list[str]:
+def _comment_lines(text: str, indent: str) -> list[str]:
     lead = f"{indent}# "
     return wrap(
         text, WIDTH, initial_indent=lead, subsequent_indent=f"{lead}  ", break_long_words=False
@@ -115,7 +116,7 @@ KEEP_LAST = "KEEP_LAST"
 def to_nodl(
     node: LearnedNode, graph: System, namespace: str, library: NodeLibrary, json: bool = False
 ) -> NodlFile:
-    """Return the NoDL document of a learned node, with QoS as seen; raises ProofError."""
+    """Return the NoDL document of a learned node; raises ProofError if reading it gives another one."""
     usual = {(it.role, it.name) for it in library.parts[EVERY_NODE]} | {("subscribes", CLOCK)}
     ends = [it for it in node.facts.endpoints if (it.role, it.name) not in usual]
     # One entry for each of its types.

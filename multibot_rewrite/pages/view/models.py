@@ -73,7 +73,10 @@ class Model(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Vertices (x, y, z: 32-bit floats), triangles (three 32-bit numbers), colours (a byte each)."""
+    """Vertices and triangles, and the colours of the vertices where the file has materials.
+
+    A vertex is x, y, z as 32-bit floats, a triangle three 32-bit numbers of vertices, a colour red,
+    green, blue, a byte each."""
 
     vertices: bytes
     faces: bytes

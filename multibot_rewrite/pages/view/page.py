@@ -22,7 +22,7 @@ Meshes = Mapping[str, Mesh | str]
 
 
 def meshes_of(scene: ShownScene, tell: Callable[[str], None] = lambda _: None) -> Meshes:
-    """Return the meshes of all robots, each read once by a worker with limits; ``tell`` gets names."""
+    """Return the meshes of all robots, each read once by a limited worker; ``tell`` gets its name."""
     shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
     paths = [path for path in dict.fromkeys(it.mesh for it in shapes) if path]
     prepare_meshes()
@@ -49,8 +49,8 @@ def to_html(scene: ShownScene, meshes: Meshes, title: str) -> bytes:
 
 def to_frame(scene: ShownScene, meshes: Meshes, title: str) -> Framed:
     """Return the page, to be put into another; raises Unusable without trimesh."""
-    library, own = three_js(), _asset("viewer.js") + _asset("heard.js")
-    style = _asset("viewer.css")
+    library, own = three_js(), _asset_text("viewer.js") + _asset_text("heard.js")
+    style = _asset_text("viewer.css")
     scripts = f"{source_hash(library)} {source_hash(own)}"
     policy = (
         f"default-src 'none'; style-src {source_hash(style)}; img-src data: blob:;"
@@ -92,8 +92,7 @@ def title_of(robots: Sequence[ViewedRobot], layout: str) -> str:
     return f"{plural(len(robots), 'robot')}, layout {layout}"
 
 
-def _asset(name: str) -> str:
-    """Return the text of a file of this package."""
+def _asset_text(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 

@@ -17,7 +17,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, RewrittenRobot
 from multibot_rewrite.pages.view.models import Joint, Model, load_urdf
 from multibot_rewrite.pages.view.sdf_model import line_of, lines_by_name, load_sdf
-from multibot_rewrite.planning.plan import tf_topic
+from multibot_rewrite.planning.planned_system import tf_topic
 from multibot_rewrite.related_files.names.rename_map import spell
 from multibot_rewrite.system.records import Edge, System
 from multibot_rewrite.system.tf_copies import tree_topic
@@ -154,7 +154,7 @@ class HeardFrame(NamedTuple):
 
 
 class HeardTree(NamedTuple):
-    """Frames below ``root``, parents first; drawn at the pose of ``robot``, or at the origin."""
+    """Frames below ``root``, parents first, to be drawn at ``robot``'s planned pose or the origin."""
 
     topic: str
     root: str

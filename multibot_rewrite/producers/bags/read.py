@@ -71,7 +71,7 @@ def read_bag(path: str) -> Recording:
     # What it unpacks is in the folder, and so goes also where that process is killed.
     with (
         TemporaryDirectory() as folder,
-        worker_pool(partial(_read, folder, most), [path], lost, 1) as workers,
+        worker_pool(partial(_read_with_limits, folder, most), [path], lost, 1) as workers,
     ):
         found = next(workers.results())
     if isinstance(found, InputError):
@@ -79,8 +79,8 @@ def read_bag(path: str) -> Recording:
     return found
 
 
-def _read(folder: str, most: int, path: str) -> Recording | InputError:
-    """Return what a bag holds, or why not, in a process with limits: little may unpack to much."""
+def _read_with_limits(folder: str, most: int, path: str) -> Recording | InputError:
+    """Return what a bag holds, or why not, from a process with limits: little may unpack to much."""
     import tempfile
 
     from rosbags.rosbag2 import Reader
@@ -128,6 +128,7 @@ def _recording(reader: Reader) -> Recording:
 
 
 def _topic(reader: Reader, name: str, connections: list[Connection]) -> RecordedTopic:
+    """Return a topic of a bag, with what its first messages say."""
     first = connections[0]
     count = sum(it.msgcount for it in connections)
     type_, frames, joints, back = str(first.msgtype), {}, {}, 0.0

@@ -58,8 +58,7 @@ def is_recorded(graph: System) -> bool:
 
 
 def as_snapshot(found: Recording, plan: System | None = None) -> System:
-    """Return the recording as a snapshot. Senders of transforms are those that publish the topic by
-    the plan: a transform does not name its own."""
+    """Return the recording as a snapshot; transforms have the senders that the plan has."""
     seconds = round(found.seconds, 2)
     sent = [it for it in surely(plan).ends if it.role == PUBLISHES] if plan else []
     senders = dicts_by_key((it.name, it.node, None) for it in sent)
@@ -68,7 +67,7 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
         for it in found.transforms
     )
     around = Environment(0, "OFF", (), ROSBAG, "", False, 0, QUIET, seconds, found.caveats)
-    heard = tuple(one for it in found.topics for one in _heard(it))
+    heard = tuple(one for it in found.topics for one in _heard_on(it))
     ends = (
         End(TOPIC, PUBLISHES, it.name, it.type, "", RECORDER, qos, "")
         for it in found.topics
@@ -77,7 +76,8 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
     return System((), tuple(ends), frames, around, heard)
 
 
-def _heard(it: RecordedTopic) -> Iterable[Heard]:
+def _heard_on(it: RecordedTopic) -> Iterable[Heard]:
+    """Yield what the messages of a topic name: frames, joints, a clock that went back."""
     yield from (Heard(it.name, frame, pose=it.pose) for frame in it.frames)
     yield from (Heard(it.name, "", joints=names) for names in it.joints)
     if it.back:

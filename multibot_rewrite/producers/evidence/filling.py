@@ -30,6 +30,7 @@ Ids = Mapping[str, str]
 
 def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeFacts:
     """Return ``node`` with the names that its parameters set, under the name that it has there.
+
     ``known`` is the node without what a node set changes: names of the node set remain unless
     parameters say more. Raises InputError for a word of a list that makes no valid name."""
     values, value_of = given.values, lookup(node, given.values)
@@ -66,13 +67,13 @@ def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeF
 
 
 def sent_with(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTransform]:
-    """Return the transforms that a node sends with these parameters."""
+    """Yield the transforms that a node sends with these parameters."""
     value_of = lookup(node, values)
     yield from (it._replace(condition="") for it in node.sends if holds(it.condition, value_of))
 
 
 def lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
-    """Return a look-up for conditions: a parameter's value, or its default if it names a frame."""
+    """Return what finds the value of a parameter for a condition, or the default that names a frame."""
     defaults = {it.parameter: it.default for it in node.frames}
     return lambda name: values[name].value if name in values else defaults.get(name)
 
@@ -84,34 +85,33 @@ def _endpoint(
     values: Mapping[str, Given],
     value_of: Values,
 ) -> Iterator[Endpoint]:
-    """Yield the endpoint once for each binding of its ids, with the names that are set; ``own`` is
-    what the node set makes of it."""
+    """Yield an endpoint under the names that are set, once for each binding of its ids."""
     is_made = "<" in raw.name or "*" in raw.name
     if not (raw.parameter or raw.condition or raw.when or is_made):
-        yield from (_typed(it, value_of) if it.types else it for it in own)
+        yield from (_with_chosen_type(it, value_of) if it.types else it for it in own)
         return
     ids = dict(node.ids)
-    wanted = _wanted(ids, raw.name, raw.parameter, raw.condition)
-    asked = _wanted(ids, raw.when)
+    wanted = _ids_in(ids, raw.name, raw.parameter, raw.condition)
+    asked = _ids_in(ids, raw.when)
     # What its name has decides how it is called; what only its condition asks may be unknown.
     if _are_listed([ids[it] for it in asked], values):
         wanted = [*dict.fromkeys((*wanted, *asked))]
     is_there = verdict(raw.when, value_of) if raw.when and not wanted else None
     if is_there is False:
         return
-    of_set = [_sure(it, is_there) for it in own]
+    of_set = [_sure_if(it, is_there) for it in own]
     remapped = next((it.remapped for it in of_set), "")
     if not _is_decided(raw, [ids[it] for it in wanted], values, of_set):
-        yield from (_typed(it, value_of) for it in of_set)
+        yield from (_with_chosen_type(it, value_of) for it in of_set)
         return
     for binding in _bindings(ids, wanted, values):
-        bound = _bound(raw._replace(remapped=remapped), binding)
+        bound = _with_bound_ids(raw._replace(remapped=remapped), binding)
         is_bound = verdict(bound.when, value_of) if bound.when and binding else is_there
         if is_bound is not False and holds(bound.condition, value_of):
             decided = is_bound if bound.when else bool(binding or bound.condition)
-            typed = _typed(_sure(bound, decided), value_of)
+            typed = _with_chosen_type(_sure_if(bound, decided), value_of)
             words = [it for it in _ID.findall(raw.name) if it in ids]
-            listed = values.get(_put(ids[words[-1]], binding)) if words else None
+            listed = values.get(_with_ids(ids[words[-1]], binding)) if words else None
             if listed and isinstance(listed.value, list) and typed.type.startswith(OF_LIST):
                 # The type stands behind its word in a list of names and types.
                 items = [str(it) for it in listed.value]
@@ -121,7 +121,8 @@ def _endpoint(
                 yield _checked(it, listed)
 
 
-def _sure(endpoint: Endpoint, is_there: bool | None) -> Endpoint:
+def _sure_if(endpoint: Endpoint, is_there: bool | None) -> Endpoint:
+    """Return an endpoint without its condition, if that holds."""
     return endpoint._replace(when="") if is_there else endpoint
 
 
@@ -135,7 +136,7 @@ def _checked(endpoint: Endpoint, listed: Given | None) -> Endpoint:
     return endpoint
 
 
-def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
+def _with_chosen_type(endpoint: Endpoint, value_of: Values) -> Endpoint:
     """Return the endpoint with the one type that its parameters choose."""
     chosen = chosen_type(endpoint.types, value_of)
     return endpoint._replace(type=chosen, also=(), types=()) if chosen else endpoint
@@ -156,7 +157,7 @@ def _is_decided(
     return "<" in raw.name and all("<" in it.name for it in of_set)
 
 
-def _wanted(ids: Mapping[str, str], *texts: str) -> list[str]:
+def _ids_in(ids: Mapping[str, str], *texts: str) -> list[str]:
     """Return the ids that texts have, each once."""
     return [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
 
@@ -171,21 +172,21 @@ def _bindings(
 ) -> Iterator[Ids]:
     """Yield every choice of the wanted ids; a list may depend on another id (``<layer>.sources``)."""
     found: list[dict[str, str]] = [{}]
-    for name in _in_order(ids, wanted):
+    for name in _with_needed_ids(ids, wanted):
         found = [
             {**binding, name: word}
             for binding in found
-            for word in _items(values.get(_put(ids[name], binding)))
+            for word in _items(values.get(_with_ids(ids[name], binding)))
         ]
     yield from found
 
 
-def _in_order(ids: Mapping[str, str], wanted: Iterable[str]) -> list[str]:
+def _with_needed_ids(ids: Mapping[str, str], wanted: Iterable[str]) -> list[str]:
     """Return the wanted ids and those that their lists need, the needed ones first."""
     order: list[str] = []
     for name in wanted:
         needed = [it for it in _ID.findall(ids[name]) if it in ids]
-        order += [it for it in (*_in_order(ids, needed), name) if it not in order]
+        order += [it for it in (*_with_needed_ids(ids, needed), name) if it not in order]
     return order
 
 
@@ -198,20 +199,21 @@ def _items(given: Given | None) -> list[str]:
     return [it for it in words if not _TYPE.search(it)]
 
 
-def _put(text: str, binding: Ids) -> str:
+def _with_ids(text: str, binding: Ids) -> str:
+    """Return a text with its ``<id>`` placeholders filled in."""
     return _ID.sub(lambda found: binding.get(found[1], found[0]), text)
 
 
-def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
-    name = _put(endpoint.name, binding)
+def _with_bound_ids(endpoint: Endpoint, binding: Ids) -> Endpoint:
+    name = _with_ids(endpoint.name, binding)
     # A name that is made at run time is known now, so a rule reaches it.
     return endpoint._replace(
         name=name,
         fixed=endpoint.fixed if name == endpoint.name else "",
-        parameter=_put(endpoint.parameter, binding),
-        condition=_put(endpoint.condition, binding),
-        when=_put(endpoint.when, binding),
-        types=tuple((_put(it, binding), type_) for it, type_ in endpoint.types),
+        parameter=_with_ids(endpoint.parameter, binding),
+        condition=_with_ids(endpoint.condition, binding),
+        when=_with_ids(endpoint.when, binding),
+        types=tuple((_with_ids(it, binding), type_) for it, type_ in endpoint.types),
     )
 
 
@@ -238,8 +240,7 @@ def _named(endpoint: Endpoint, values: Mapping[str, Given], ending: str) -> Iter
 
 
 def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[str, str]]:
-    """Yield parameters and the topics in them: all that match a pattern, each item of a list; of
-    several parameters the first that has one. An empty text counts: it means no topic."""
+    """Yield the first parameter's topics, or all of a pattern; an empty text means no topic."""
     found: list[tuple[str, str]] = []
     for one in parameter.split(ALSO):
         found = []
@@ -253,7 +254,7 @@ def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[st
 
 
 def _called(parameter: str, values: Mapping[str, Given]) -> list[str]:
-    """Return the values that a parameter may stand for, in their order."""
+    """Return the names of the values that a parameter may stand for, in their order."""
     if not (_is_numbered(parameter) or _GAP.search(parameter)):
         return [parameter] if parameter in values else []
     return [name for name in values if _pattern(parameter).fullmatch(name)]
@@ -266,6 +267,7 @@ def _is_numbered(parameter: str) -> bool:
 
 @lru_cache(maxsize=1024)
 def _pattern(parameter: str) -> re.Pattern[str]:
+    """Return the expression for a parameter with placeholders."""
     number = r"\d+" if _is_numbered(parameter) else ""
     name = parameter.removesuffix(_NUMBER) if number else parameter
     return re.compile(with_gaps(_GAP.split(name), "[^.]") + number)

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A description -> the interfaces that its ros2_control systems export and its controllers claim, and
-the nodes of its hardware.
+"""The interfaces that a description's hardware exports and its controllers claim, and its nodes.
 
 Sources: ros2_control hardware_interface component_parser.cpp (``<joint>``, ``<sensor>`` and ``<gpio>``
 of a ``<ros2_control>``; an interface is called ``OWNER/INTERFACE``). What the code of a plugin exports
 besides, and the nodes that it makes, are in ``hardware.yaml``.
 
 What a controller claims is a template in its node's table: a name with parameters in <>.
-``<joints>/<command_interfaces>`` stands for every joint with every interface. ``<a|b>`` is the first of
+``<joints>/<command_interfaces>`` is every joint with every interface. ``<a|b>`` is the first of
 them that is set, ``<a=x>`` is ``x`` where it is not, ``<a+_>`` is its value and ``_``. ``[0..17]``
-counts, ``[x,y]`` is each word. ``{a}`` in the name of a parameter, or in the condition, is what stands
-for ``<a>``. A parameter that is not set and has no default makes no name. ``<type>`` is the type of the
-controller.
-"""
+counts, ``[x,y]`` is each word. ``{a}`` in the name of a parameter, or in the condition, is replaced as
+``<a>`` is. A parameter that is not set and has no default makes no name. ``<type>`` is the type of the
+controller."""
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -88,8 +86,7 @@ def exported(root: _Element, file: str) -> Iterator[Exported]:
 def with_hardware(
     nodes: Iterable[NodeFacts], root: _Element, file: str, known: Mapping[str, NodeFacts]
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes of a robot and, with its controller manager, those that its hardware makes.
-    ``known`` are the known nodes by name."""
+    """Return a robot's nodes and, if a controller manager is among them, those of its hardware."""
     own = tuple(nodes)
     manager = next((it for it in own if MANAGER in (it.name, it.known)), None)
     if manager is None:
@@ -105,8 +102,7 @@ def with_hardware(
 
 
 def components(root: _Element, file: str, known: Mapping[str, NodeFacts]) -> Iterator[NodeFacts]:
-    """Yield the node of each hardware component of a description, called as its code calls it
-    (ros2_control hardware_component_interface.cpp); none in a release that makes none."""
+    """Yield the node of each hardware component, if any (hardware_component_interface.cpp)."""
     entry = known.get(HARDWARE_NODE)
     if entry is None:
         return
@@ -122,6 +118,7 @@ def _place(element: _Element, file: str) -> Place:
 
 
 def _plugin(hardware: _Element) -> _Plugin | None:
+    """Return what is known of a hardware plugin; None for an unknown one."""
     return _plugins().get((hardware.findtext("plugin") or "").strip())
 
 
@@ -174,8 +171,7 @@ _PART = lazy_compile(
 
 
 class Claimed(NamedTuple):
-    """An interface that a controller claims: ``kind`` is command or state; ``place`` is where the
-    parameters name it, None where only defaults do."""
+    """A command or state interface that a controller claims; ``place`` is None for a default's."""
 
     kind: str
     name: str
@@ -199,7 +195,7 @@ def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Cl
     """Yield the interfaces that these claims make with these parameters, each once."""
     found: dict[tuple[str, str], Claimed] = {}
     for claim in claims:
-        for made in _names(claim.template, _Made("", claim.condition, None), values):
+        for made in _filled_templates(claim.template, _Made("", claim.condition, None), values):
             if made.text and holds(made.condition, _lookup(values)):
                 it = Claimed(claim.kind, made.text, made.place)
                 found.setdefault((it.kind, it.name), it)
@@ -210,7 +206,7 @@ def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed,
     """Yield command interfaces that two parameters of a controller claim, with the first's place."""
     values, first = {**node.values, TYPE: Given(node.program, node.place)}, dict[str, Place]()
     for claim in (it for it in claims if it.kind == COMMAND):
-        for made in _names(claim.template, _Made("", claim.condition, None), values):
+        for made in _filled_templates(claim.template, _Made("", claim.condition, None), values):
             if made.place and holds(made.condition, _lookup(values)):
                 other = first.setdefault(made.text, made.place)
                 if other != made.place:
@@ -218,10 +214,12 @@ def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed,
 
 
 def _lookup(values: Mapping[str, Given]) -> Values:
+    """Return what finds a value by its parameter; it gives None for one that is not set."""
     return lambda name: values[name].value if name in values else None
 
 
-def _names(template: str, made: _Made, values: Mapping[str, Given]) -> Iterator[_Made]:
+def _filled_templates(template: str, made: _Made, values: Mapping[str, Given]) -> Iterator[_Made]:
+    """Yield the names that a template makes with these parameters."""
     part = _PART.search(template)
     if part is None:
         yield made._replace(text=made.text + template)
@@ -230,12 +228,13 @@ def _names(template: str, made: _Made, values: Mapping[str, Given]) -> Iterator[
     for chosen, place in _choices(part, values):
         text = f"{made.text}{before}{chosen}{(part['after'] or '') if chosen else ''}"
         found = _Made(text, made.condition.replace(slot, chosen), made.place or place)
-        yield from _names(rest.replace(slot, chosen), found, values)
+        yield from _filled_templates(rest.replace(slot, chosen), found, values)
 
 
 def _choices(
     part: re.Match[str], values: Mapping[str, Given]
 ) -> Iterator[tuple[str, Place | None]]:
+    """Yield the values of one place of a template, each with where it is written."""
     if part["words"]:
         yield from ((it, None) for it in part["words"].split(","))
         return

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of a node set and what a robot's own files say of them -> the nodes that the robot
-runs, under the remap rules of a launch file or a plugin that loads them.
+"""The nodes that a robot runs, by node sets and its own files, under rules of what starts them.
 
 A file and a node set that disagree: the file wins, and the disagreement is a note.
 
 Of controllers that command the same joint, sensor or gpio only one can be active. Source: ros2_control
 controller_manager.cpp and resource_manager.cpp (a command interface is claimed by one active
-controller), and the hardware, which moves a joint in one mode at a time.
-"""
+controller), and the hardware, which moves a joint in one mode at a time."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -55,15 +53,15 @@ def nodes_of(
     known: Mapping[str, NodeFacts],
     spawned: Mapping[str, str] = ALWAYS,
 ) -> RobotNodes:
-    """Return the nodes of a robot: those of its node sets as its files have them, and those of its
-    files alone. ``known`` are the known nodes by name, ``spawned`` the conditions of controllers of
-    which launch files say whether they run."""
+    """Return the nodes of a robot: those of its node sets as its files have them, and its files' own.
+
+    ``spawned`` are the conditions of controllers of which launch files say whether they run."""
     # No supported release has a node that is called as before: nothing reads its section.
     given = [it for it in given if it.node.rpartition("/")[2] not in plugin_bases()[NODE].older]
     sections = {it.name: _section_of(it, given) for it in node_set}
     left, kept = _left_out(node_set, given, sections, known)
     either = {**alternatives(given, known), **spawned}
-    nodes = [_of_set(it, sections[it.name], known, either, spawned) for it in kept]
+    nodes = [_filled_node_of_set(it, sections[it.name], known, either, spawned) for it in kept]
     names = {it.node for it in filter(None, sections.values())}
     of_set = {it.place.file for it in given if it.node in names}
     sent = {child for node in kept for child in children_of(node)}
@@ -80,13 +78,13 @@ def nodes_of(
             entry = known[it.fact.known]
             nodes.append(filled(entry, it)._replace(when=meant[it.node].when, known=entry.kind))
             continue
-        node = _added(it, known, either.get(it.node, ""))
+        node = _node_of_file(it, known, either.get(it.node, ""))
         doubtful = not it.host_name and (it.place.file in of_set or sent & {*children_of(node)})
         nodes.append(node._replace(sends=()) if doubtful else node)
-    nobody = _nobody(
+    nobody = _unstarted_sections(
         it for it in given if it.node not in names and not (it.host_name or it.fact.known)
     )
-    doubtful_types = (*_unknown(given), *_of_another_release(given, known))
+    doubtful_types = (*_unknown_types(given), *_of_another_release(given, known))
     findings = sorted((*left, *nobody, *doubtful_types), key=lambda it: (it.file, it.line))
     return RobotNodes(tuple(nodes), tuple(findings))
 
@@ -122,8 +120,7 @@ def _left_out(
 
 
 def _stands_for(given: Run, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
-    """Return whether a file has a node of a node set under another name, as ekf_node for
-    ekf_filter_node, or a program of the package that sends the same, as ukf_filter_node."""
+    """Return whether a file has a node of a node set by another name, or one that sends the same."""
     if given.fact.known == node.name:
         return True
     entry = known.get(given.fact.known)
@@ -137,15 +134,14 @@ def children_of(node: NodeFacts) -> Iterator[str]:
     yield from (frames[it.child] for it in node.sends)
 
 
-def _of_set(
+def _filled_node_of_set(
     node: NodeFacts,
     section: Run | None,
     known: Mapping[str, NodeFacts],
     either: Mapping[str, str],
     spawned: Mapping[str, str],
 ) -> NodeFacts:
-    """Return a node of a node set as the files have it: a controller that the robot declares is its
-    own, whatever a node set requires."""
+    """Return a node of a node set as files have it; a declared controller needs no condition."""
     if section is None:
         return node
     made = filled(node, section, known.get(node.known))
@@ -154,9 +150,8 @@ def _of_set(
     return made._replace(name=node.name, when=when)
 
 
-def _added(given: Run, known: Mapping[str, NodeFacts], either: str) -> NodeFacts:
-    """Return a node of a file alone. A controller runs, unless ``either`` says which other runs in
-    its place; another node with parameters may run."""
+def _node_of_file(given: Run, known: Mapping[str, NodeFacts], either: str) -> NodeFacts:
+    """Return a node of a file alone: a controller runs unless ``either``, another node may run."""
     node = known.get(given.fact.known)
     if node is None:
         package = given.program.partition("/")[0]
@@ -172,7 +167,7 @@ def _added(given: Run, known: Mapping[str, NodeFacts], either: str) -> NodeFacts
     return filled(node, given)._replace(when=when)
 
 
-def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
+def _unstarted_sections(given: Iterable[Run]) -> Iterator[Finding]:
     """Report sections of nodes that are unknown and not started, once for each file."""
     for file, nodes in groupby(given, lambda it: it.place.file):
         first, *rest = nodes
@@ -182,7 +177,8 @@ def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
         yield NOBODY.finding(message, hint, file=file, line=first.place.line, column=1)
 
 
-def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
+def _unknown_types(given: Sequence[Run]) -> Iterator[Finding]:
+    """Report controllers without a type, or of an unknown one."""
     for it in given:
         place = it.place
         if it.host_name and not (it.program or it.fact.known):
@@ -202,6 +198,7 @@ def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
 
 
 def _of_another_release(given: Sequence[Run], known: Mapping[str, NodeFacts]) -> Iterator[Finding]:
+    """Report controllers whose types the release lacks."""
     for it in given:
         if it.host_name and it.fact.known and not it.unknown_type and it.fact.known not in known:
             message = f"controller {it.node} is of type {it.program}, which this release lacks"
@@ -244,7 +241,7 @@ def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) 
     below, _, name = node.name.rpartition("/")
     home = above.removesuffix(f"/{below}") if below else above
     targets = {
-        expand(old, above, name): _target(new, above, home)
+        expand(old, above, name): _resolved_target(new, above, home)
         for old, new in reversed([it for it in rules if it[0] not in ("/tf", "/tf_static")])
     }
     ends = []
@@ -258,12 +255,12 @@ def under_plugin(node: NodeFacts, rules: Iterable[RemapRule], release: str) -> N
     """Return a controller under the rules of the plugin that loads it, if these reach it."""
     if not (node.is_controller and controller_way(release).of_manager):
         return node
-    own = node.name.rpartition("/")[2]
+    above, _, own = node.name.rpartition("/")
     mine = ((it.source, it.target) for it in rules if it.node in ("", own))
-    return remapped(node, mine, "")
+    return remapped(node, mine, f"/{above}")
 
 
-def _target(new: str, above: str, home: str) -> str:
+def _resolved_target(new: str, above: str, home: str) -> str:
     """Return a rule's target for a robot in ``home``, for a node in the namespace ``above``."""
     inner = above != home and not new.startswith(("/", "~"))
     full = f"{above}/{new}" if inner else new

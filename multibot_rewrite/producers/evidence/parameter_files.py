@@ -60,8 +60,8 @@ def given_nodes(
     managers: Collection[str] = (),
 ) -> list[Run]:
     """Return the nodes that these files have sections for, and the controllers that they declare.
-    ``managers`` are controller managers with unusual names. Raises InputError for a file that is
-    not a parameter file, and for a controller whose name no node can have."""
+
+    ``managers`` have unusual names. Raises InputError for another file or an invalid name."""
     sections = [it for document in documents for it in _sections(document)]
     controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections, managers))}
     for name, it in controllers.items():
@@ -70,10 +70,11 @@ def given_nodes(
     own = (it.name for it in sections if not it.name.endswith(INNER))
     names = dict.fromkeys(filter(None, (*own, *controllers)))
     near = _by_name(sections)
-    return [_node(name, near(name), controllers.get(name), known) for name in names]
+    return [_run_of_sections(name, near(name), controllers.get(name), known) for name in names]
 
 
 def _check_name(name: str, place: Place) -> None:
+    """Raise InputError for the name of a controller that no node can have."""
     fault = check_node_name(name)
     # Launch files fill in placeholders.
     if not fault or PLACEHOLDER.search(name):
@@ -89,8 +90,7 @@ def _check_name(name: str, place: Place) -> None:
 def named_values(
     document: YamlText, nodes: Iterable[str]
 ) -> Iterator[tuple[str, dict[str, Given]]]:
-    """Yield those of the nodes (full names) that a file has a section for by name, with all values
-    that each gets from the file. Raises InputError for a file that is not a parameter file."""
+    """Yield nodes that a file has sections for by name, with all their values; raises InputError."""
     sections = _sections(document)
     for node in nodes:
         own = [it for it in sections if is_for(it.raw.path, node)]
@@ -101,7 +101,7 @@ def named_values(
 def values_for(node: str, documents: Iterable[YamlText]) -> dict[str, Given]:
     """Return all values that a node (full name) gets from these files; raises as ``named_values``."""
     sections = [it for document in documents for it in _sections(document)]
-    return _values(_own(sections, node.strip("/")))
+    return _values(_sections_for(sections, node.strip("/")))
 
 
 @lru_cache(maxsize=64)
@@ -111,15 +111,16 @@ def _sections(document: YamlText) -> tuple[_Section, ...]:
     for it in raw_sections(document):
         tokens = [*dropwhile(ANY.__contains__, it.path.strip("/").split("/"))]
         name = "/".join(tokens) if not set(tokens) & set(ANY) else ""
-        found.append(_Section(document.file, it, dict(_flat(document, it.body, "")), name))
+        found.append(_Section(document.file, it, dict(_flat_values(document, it.body, "")), name))
     return tuple(found)
 
 
-def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
+def _flat_values(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
+    """Yield dotted names of parameters and their values, for any robot."""
     for key, node in pairs(body):
         name = f"{above}{without_robot(str(key.value))}"
         if below := names_below(node):
-            yield from _flat(document, below, f"{name}.")
+            yield from _flat_values(document, below, f"{name}.")
             continue
         # What rcl rejects is reported where the file is rewritten.
         with suppress(InputError):
@@ -167,7 +168,7 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
 
 
 def _by_name(sections: Sequence[_Section]) -> Callable[[str], list[_Section]]:
-    """Return a look-up of a node's possible sections, in order: by its name, and all with wildcards."""
+    """Return what finds the sections of a node, in order: those of its name, all with wildcards."""
     wild: list[tuple[int, _Section]] = []
     named: dict[str, list[tuple[int, _Section]]] = {}
     for number, it in enumerate(sections):
@@ -176,19 +177,22 @@ def _by_name(sections: Sequence[_Section]) -> Callable[[str], list[_Section]]:
     return lambda name: [it for _, it in sorted([*named.get(name, ()), *wild], key=itemgetter(0))]
 
 
-def _own(sections: Sequence[_Section], name: str) -> list[_Section]:
+def _sections_for(sections: Sequence[_Section], name: str) -> list[_Section]:
+    """Return the sections that a node reads: those of its name, and wildcards."""
     # A section such as /*/NODE is for the node in whatever namespace it is.
     return [it for it in sections if it.name == name or is_for(it.raw.path, f"/{name}")]
 
 
 def _values(sections: Sequence[_Section]) -> dict[str, Given]:
+    """Return the values of sections by name; those of later sections count."""
     return {key: given for it in sections for key, given in it.values.items()}
 
 
-def _node(
+def _run_of_sections(
     name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
 ) -> Run:
-    own = _own(sections, name)
+    """Return a node with the values of its sections, and what it is known as."""
+    own = _sections_for(sections, name)
     values = _values(own)
     named = [it for it in own if it.name]
     last = name.rpartition("/")[2]

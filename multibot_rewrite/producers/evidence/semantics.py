@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What MoveIt makes of an SRDF and its URDF (groups, passive and virtual joints), and which joints
-its controllers move.
+"""What MoveIt makes of an SRDF and its URDF, and which joints its controllers move.
 
 Sources: srdfdom model.cpp; moveit2 robot_model.cpp (fixed and mimic joints are no variables of a
 group), current_state_monitor.cpp (passive joints need no state; a virtual joint that moves is looked up
 in tf), trajectory_execution_manager.cpp (a trajectory's controllers have to move all its joints).
 
-moveit_simple_controller_manager_plugin.cpp has ``controller_names``, and of each a map.
-"""
+moveit_simple_controller_manager_plugin.cpp has ``controller_names``, and of each a map."""
 
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -35,8 +33,7 @@ class PlanningGroup(NamedTuple):
 
 
 class VirtualJoint(NamedTuple):
-    """What joins the root link to a frame: MoveIt plans in ``parent``. One that is not ``fixed`` has
-    its state from the transform between them."""
+    """What joins the root link to ``parent``, where MoveIt plans; it moves unless it is ``fixed``."""
 
     name: str
     type: str

@@ -93,8 +93,7 @@ def _included(answer: Any) -> Iterator[str]:
 
 
 def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> tuple[object, float]:
-    """Return what a fork answers for one launch file, and its time, without waiting for the
-    processor; ``first`` has the links to packages."""
+    """Return a fork's answer for one launch file, and the processor time that it took."""
     ours, theirs = socket.socketpair()
     pid = os.fork()
     if not pid:

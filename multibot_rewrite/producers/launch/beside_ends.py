@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What launched nodes have in addition to their ends: the transforms that they send, what they put
-before frames, the interfaces of ros2_control that managers export and spawned controllers claim."""
+"""What launched nodes have besides ends: transforms, frame prefixes, ros2_control interfaces."""
 
 from __future__ import annotations
 
@@ -35,7 +34,7 @@ def edges_of(it: Run, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
     """Yield the transforms of a node, each with its topic."""
     sent = [end.name for end in it.fact.endpoints if end.role == PUBLISHES and not end.when]
     whole = publishes_a_tree(it)
-    for edge in (tree_of(it) or ()) if whole else _below(prefix_of(it), sent_by(it.fact, "")):
+    for edge in (tree_of(it) or ()) if whole else _with_prefix(prefix_of(it), sent_by(it.fact, "")):
         topic = TF_STATIC if edge.static else TF
         # A driver may send its odometry on tf_static, and nodes may only have one of the two.
         named = next((name for name in sent if name.strip("/") == topic.strip("/")), "")
@@ -51,13 +50,12 @@ def passed_on(it: Run, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Ed
             yield from ((full, edge) for edge in inside.get(own, ()))
 
 
-def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
+def _with_prefix(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
     return [edge_of(prefix + it.parent, prefix + it.child, it.static) for it in edges]
 
 
 def prefix_of(it: Run) -> str:
-    """Return the prefix that a node adds to its frames: robot_localization ros_filter.cpp
-    (``tf_prefix``), ros2_controllers diff_drive_controller.cpp (its namespace by default)."""
+    """Return the prefix that a node adds to frames (ros_filter.cpp, diff_drive_controller.cpp)."""
     # What its code makes has it already.
     made = any("<tf_prefix=" in end for sent in it.fact.sends for end in sent[:2])
     prefix = None if made else it.value("tf_prefix")
@@ -77,7 +75,7 @@ def tree_of(it: Run) -> list[Edge] | None:
     """Return the transforms of a description under ``frame_prefix``; None if they are unknown."""
     prefix = str(it.value("frame_prefix") or "")
     root = root_of(it.value(DESCRIPTION))
-    return None if root is None else _below(prefix, edges_in(root))
+    return None if root is None else _with_prefix(prefix, edges_in(root))
 
 
 _DESCRIPTION = "robot_description"

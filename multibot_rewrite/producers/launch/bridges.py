@@ -48,9 +48,10 @@ class Row(NamedTuple):
 
 
 def bridge_rows(node: LaunchedNode, words: Collection[str]) -> tuple[Endpoint, ...]:
-    """Return the ROS topics in the arguments of a bridge; empty for another program. The same text
-    names the topic in Gazebo. With one of ``words`` in it, it is that of one robot: then its remap
-    rule counts, and without a rule the name is left out."""
+    """Return the ROS topics in the arguments of a bridge; empty for another program.
+
+    A name with one of ``words`` is that of one robot: its remap rule counts, without one it is left
+    out."""
     rules = {f"/{old.lstrip('/')}": new for old, new in node.remappings}
     rows = _argument_rows(f"{node.package}/{node.executable}", node.arguments)
     return tuple(end for it in rows for end in _for_any_robot(it.end, rules, words))
@@ -59,7 +60,7 @@ def bridge_rows(node: LaunchedNode, words: Collection[str]) -> tuple[Endpoint, .
 def services_in(words: Iterable[str]) -> dict[str, Row]:
     """Return the rows of services among the arguments of programs, each by its argument."""
     found = ((word, _ROW.fullmatch(word)) for word in words)
-    rows = ((word, [*_of_row(row)]) for word, row in found if row and "/srv/" in row["type"])
+    rows = ((word, [*_rows_of(row)]) for word, row in found if row and "/srv/" in row["type"])
     return {word: row for word, own in rows for row in own}
 
 
@@ -85,9 +86,7 @@ def is_bridge(it: Run) -> bool:
 
 
 def bridged_by(it: Run) -> Iterator[Row]:
-    """Return all that a bridge passes on; nothing for another node. Names in the simulator may be
-    below its namespace (ros_gz humble ros_gz_bridge/src/ros_gz_bridge.cpp,
-    expand_gz_topic_names)."""
+    """Yield all that a bridge passes on, maybe below its namespace (expand_gz_topic_names)."""
     if not is_bridge(it):
         return
     below = it.namespace if expands(it) else "/"
@@ -96,7 +95,7 @@ def bridged_by(it: Run) -> Iterator[Row]:
     own = [read_file(path).decode("utf-8", "replace")] if os.path.isfile(path) else []
     rows = [*_argument_rows(it.program, it.arguments)]
     for text in (*own, *it.texts):
-        rows += _of_text(text)
+        rows += _rows_of_text(text)
     yield from (Row(row.end, expand(row.inside, below, it.name)) for row in rows)
 
 
@@ -144,27 +143,29 @@ def _argument_rows(program: str, words: Sequence[str]) -> Iterator[Row]:
     for word in words:
         row = _ROW.fullmatch(word)
         if program in _BRIDGES and row is not None:
-            yield from _of_row(row)
+            yield from _rows_of(row)
         elif program in _OF_IMAGES and row is None and not word.startswith("-"):
             yield Row(Endpoint(TOPIC, PUBLISHES, word, _IMAGE, transport=True), word)
 
 
-def _of_row(row: re.Match[str]) -> Iterator[Row]:
+def _rows_of(row: re.Match[str]) -> Iterator[Row]:
+    """Yield the rows of an argument ``TOPIC@TYPE[GZ_TYPE`` or ``SERVICE@TYPE``."""
     name, type_, way, _, inside = row.groups()
     if "/srv/" in type_:
         yield Row(Endpoint(SERVICE, SERVES, name, type_), name)
     else:
-        yield from _topics(name, type_, way, inside or name)
+        yield from _topic_rows(name, type_, way, inside or name)
 
 
-def _topics(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
+def _topic_rows(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
     full = type_ if type_.count("/") > 1 else type_.replace("/", "/msg/")
     for role in _ROLES.get(way, ()):
         yield Row(Endpoint(TOPIC, role, name, full), inside)
 
 
 @lru_cache(maxsize=4096)  # a fleet has one a robot, and several rules ask for it
-def _of_text(text: str) -> tuple[Row, ...]:
+def _rows_of_text(text: str) -> tuple[Row, ...]:
+    """Return the rows of a bridge file; none for another text."""
     rows: list[Row] = []
     try:
         entries = load_yaml(text, "")
@@ -179,13 +180,14 @@ def _of_text(text: str) -> tuple[Row, ...]:
             if service := entry.get(SERVICE_ROW):
                 rows.append(Row(Endpoint(SERVICE, SERVES, str(service), type_), str(service)))
             elif topic:
-                rows += _topics(str(topic), type_, way, str(inside))
+                rows += _topic_rows(str(topic), type_, way, str(inside))
     return (*rows,)
 
 
 def _for_any_robot(
     it: Endpoint, rules: dict[str, str], words: Collection[str]
 ) -> Iterator[Endpoint]:
+    """Yield an endpoint; that of one robot under its remap rule, or not at all."""
     if not set(it.name.split("/")) & set(words):
         yield it
         return
@@ -223,7 +225,7 @@ def bridged_domains(running: Sequence[Run]) -> BridgedDomains:
 
 
 def _ends(it: Run, notes: list[LaunchNote]) -> Iterator[End]:
-    """Yield the ends of one bridge. All its files are for one name: the last that has one."""
+    """Yield the ends of one bridge; its files are all for one node, named by the last that does so."""
     options, paths = _domains_and_files(it.arguments)
     files: list[Mapping[str, Any]] = []
     for path in paths:
@@ -257,7 +259,7 @@ def _domains_and_files(words: Sequence[str]) -> tuple[dict[str, object], list[st
 
 
 def _of_topic(it: Run, bridge: str, topic: str, row: Mapping[str, Any]) -> Iterator[End]:
-    """Yield both ends of a topic, and those of the way back; of one domain nothing is bridged."""
+    """Yield the ends of a topic in both domains, and of the way back; none if these are one domain."""
     domains: tuple[int, ...] = ()
     with suppress(KeyError, TypeError, ValueError):
         domains = (int(row["from_domain"]), int(row["to_domain"]))

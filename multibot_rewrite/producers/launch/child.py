@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch files are programs: they are read in a process of their own, behind fences and in limited
-time. The ``system_model.yaml`` that play_launch writes has what one starts, and is read without
-ROS.
+"""Launch files are programs: they are read in a process of their own, fenced, in limited time.
+
+The ``system_model.yaml`` that play_launch writes has what one starts, and is read without ROS.
 
 Source: NEWSLabNTU/play_launch, docs/design/system-model.md, scripts/compare_models.py: below
 ``structure.nodes`` each node by its full name with ``pkg``, ``exec`` or ``plugin``, ``node_name``,
-``container``, ``remaps``, ``params`` and the texts of ``params_files``.
-"""
+``container``, ``remaps``, ``params`` and the texts of ``params_files``."""
 
 from __future__ import annotations
 
@@ -99,6 +98,7 @@ def _node_of(full: str, it: Mapping[str, Any], place: Place) -> LaunchedNode:
 
 
 def _parameters(it: Mapping[str, Any], place: Place) -> Iterator[ParameterText]:
+    """Yield the parameter files and values of a node in a system model."""
     for text in it.get("params_files") or ():
         yield ParameterText("", str(text))
     program = f"{it.get('pkg')}/{it.get('exec')}"
@@ -142,16 +142,17 @@ def read_launch_files(
 ) -> list[LaunchGraph | InputError]:
     """Return what each launch file starts, or why it cannot be read; each has this many seconds."""
     with tempfile.TemporaryDirectory(prefix=FOLDER) as folder:
-        said = _run(json.dumps([seconds, orders]), folder)
+        said = _read_in_child(json.dumps([seconds, orders]), folder)
     try:
         answers = load_json(said)
-        return [_read(*it) for it in zip(orders, answers, strict=True)]
+        return [_checked_answer(*it) for it in zip(orders, answers, strict=True)]
     except ValueError:
         why = "its process gave no answer; a file that tampers with it is not read"
         return [InputError(f"{it.file}: the launch file cannot be read: {why}") for it in orders]
 
 
-def _read(order: LaunchOrder, answer: Mapping[str, Any]) -> LaunchGraph | InputError:
+def _checked_answer(order: LaunchOrder, answer: Mapping[str, Any]) -> LaunchGraph | InputError:
+    """Return the graph of an answer, or why there is none."""
     why = answer.get("error")
     try:
         if why is None:
@@ -168,9 +169,8 @@ def _read(order: LaunchOrder, answer: Mapping[str, Any]) -> LaunchGraph | InputE
     return InputError(f"{order.file}: the launch file cannot be read: {why}")
 
 
-def _run(orders: str, folder: str) -> bytes:
-    """Return the answer of the process that reads launch files. What they start ends with it, and
-    what they make is in ``folder``."""
+def _read_in_child(orders: str, folder: str) -> bytes:
+    """Return the answer of the process that reads launch files; what they start ends with it."""
     environ = {**variables(), _INSIDE: "1", "TMPDIR": folder}
     process = subprocess.Popen(
         python(_MODULE),

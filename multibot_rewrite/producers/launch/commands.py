@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What ``Command`` substitutions would print, where that is known without starting their programs, and
-what a launch file sees of the machine.
+"""What ``Command`` substitutions print, without their programs, and what is seen of the machine.
 
 A xacro file is expanded behind the boundary that all xacro files have, and ``urdf-postfix`` is this
 package's own. ``ros2 param get`` prints a robot's description, of which only a run tells which it is.
 Other programs are not started: their output is empty. Source: launch jazzy,
-substitutions/command.py (the line is split as a shell does), find_executable.py.
-"""
+substitutions/command.py (the line is split as a shell does), find_executable.py."""
 
 import io
 import os
@@ -47,18 +45,18 @@ class Output(NamedTuple):
 
 
 def read_commands() -> list[str]:
-    """Let ``Command`` return what is known of its output from now on, without running programs;
-    their command lines are added to the returned list."""
+    """Let ``Command`` run nothing and return known output; return a list that gets its lines."""
     lines: list[str] = []
     known = of_launch("substitutions")
-    known.Command.perform = lambda self, context: _performed(self, context, lines)
+    known.Command.perform = lambda self, context: _command_output(self, context, lines)
     known.FindExecutable.perform = lambda self, context: text(self.name, context)
     return lines
 
 
 def start_nothing(lines: list[str]) -> list[str]:
-    """Let a launch file start no program itself and wait for none from now on; ``lines`` gets the
-    command lines of programs, the returned list what is unknown of their output."""
+    """Let a launch file start no program; return a list that gets what is unknown of output.
+
+    ``lines`` gets the command lines of the programs. Nothing waits for a time."""
     lost: list[str] = []
     started: Any = type("Popen", (_Program,), {"lost": lost, "lines": lines})
     vars(subprocess)["Popen"] = started
@@ -114,8 +112,7 @@ _NETWORK = frozenset(("socket.__new__", "socket.getaddrinfo", "socket.gethostbyn
 
 
 def see_no_machine(lost: list[str]) -> None:
-    """Hide from now on folders of devices, and everything that only one machine has; ``lost`` gets
-    what a launch file asks for."""
+    """Hide devices and all that only one machine has; ``lost`` gets what a file asks for."""
 
     def tell(what: str) -> None:
         said = f"it looks at {what} of the machine, and sees nothing of it here; --trust shows it"
@@ -157,7 +154,7 @@ def faults(context: Any) -> list[str]:
     return [*context.get_locals_as_dict().get(_FAULTS, ())]
 
 
-def _performed(self: Any, context: Any, lines: list[str]) -> str:
+def _command_output(self: Any, context: Any, lines: list[str]) -> str:
     line = text(self.command, context)
     # What is kept off reads nothing of this robot.
     if OFF not in context.launch_configurations:
@@ -190,31 +187,32 @@ def xacro_of(line: str) -> FileRead | None:
     except ValueError:
         return None
     is_xacro = os.path.basename(program) == "xacro"
-    return _expanded(words) if is_xacro else None
+    return _xacro_in(words) if is_xacro else None
 
 
-def _expanded(words: Sequence[str]) -> FileRead | None:
+def _xacro_in(words: Sequence[str]) -> FileRead | None:
     files = [it for it in words if ":=" not in it and not it.startswith("-")]
     given = (it.partition(":=") for it in words if ":=" in it)
     pairs = tuple((name, value) for name, _, value in given)
     return FileRead(files[0], pairs) if len(files) == 1 else None
 
 
-def _xacro(words: Sequence[str]) -> str:
-    found = _expanded(words)
+def _xacro_text(words: Sequence[str]) -> str:
+    found = _xacro_in(words)
     return expand(found.file, dict(found.arguments)).decode() if found else ""
 
 
-def _cat(words: Sequence[str]) -> str:
+def _cat_text(words: Sequence[str]) -> str:
     return "".join(read_file(it).decode("utf-8", "replace") for it in words)
 
 
-def _asked(words: Sequence[str]) -> str:
+def _ros2_text(words: Sequence[str]) -> str:
+    """Return what ``ros2 param get`` prints for a description: words that stand for it."""
     is_description = [*words[:2], *words[-1:]] == ["param", "get", DESCRIPTION]
     return "the description of a running node" if is_description else ""
 
 
-def _postfix(words: Sequence[str]) -> str:
+def _postfix_text(words: Sequence[str]) -> str:
     if any(it.startswith("-") and it.partition("=")[0] not in _OPTIONS for it in words):
         return ""
     main = import_module(_POSTFIX).main
@@ -240,5 +238,5 @@ class _Kept(io.TextIOWrapper):
 
 
 _READERS: Mapping[str, Callable[[Sequence[str]], str]] = MappingProxyType(
-    {"xacro": _xacro, "cat": _cat, "urdf-postfix": _postfix, "ros2": _asked}
+    {"xacro": _xacro_text, "cat": _cat_text, "urdf-postfix": _postfix_text, "ros2": _ros2_text}
 )

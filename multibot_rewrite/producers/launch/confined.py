@@ -62,7 +62,7 @@ def confine(order: LaunchOrder, folder: str, more: Sequence[str], seconds: float
     Raises NotFencedError.
     """
     access = Access(order.file, Reach(order.roots), None)
-    files = Files((*_readable(access), *more), (folder, os.devnull))
+    files = Files((*_readable_paths(access), *more), (folder, os.devnull))
     hidden = {it for it in os.environ if not it.startswith((*VARIABLES, *_PLAIN))}
     held = put_up((LANDLOCK, LIMITS, SECCOMP), seconds, files)
     if not KERNEL.issubset(held):
@@ -90,11 +90,13 @@ def _asked(hidden: set[str]) -> Callable[[Any, str], str]:
     return asked
 
 
-def _readable(access: Access) -> Iterator[str]:
+def _readable_paths(access: Access) -> Iterator[str]:
     # The files in the folder of the launch file, which may be a home.
     for folder in access.beside:
         with os.scandir(folder or os.curdir) as found:
-            yield from (it.path for it in found if it.name[0] != "." and it.is_file())
+            # A link that leads to itself is none.
+            shown = (it.path for it in found if it.name[0] != ".")
+            yield from filter(os.path.isfile, shown)
     yield from access.roots
     for prefix in access.sourced:
         yield prefix
@@ -144,6 +146,7 @@ class Relay:
             return framed(REFUSAL, json.dumps(["refused", str(error)]).encode())
 
     def _one(self) -> XacroChild:
+        """Return the child that runs; raises GarbageError without one."""
         if self.child is None:
             raise GarbageError
         return self.child
@@ -214,6 +217,7 @@ class Relayed:
         return self.signal
 
     def _asked(self, what: str, name: str) -> bytes:
+        """Return the parent's answer; raises EOFError if it refuses."""
         try:
             return self.ask(what, name)
         except RefusedError:

@@ -69,12 +69,15 @@ OFF = "multibot_off"
 
 
 class Visit(NamedTuple):
-    """A visit: the context, what has been found, the files that descriptions name, what an event or a
-    timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
-    without effect, included files, the environment before the launch, the number of each action that
-    starts a process with what turns it off, what conditions keep out, what of it is kept, whether
-    conditions count, what starts it if not the launch itself, after how many events and seconds, at
-    which event of which action, the launch arguments that turn it off, and the one that turns it on."""
+    """A visit of a launch description: its context, what was found, and what starts it.
+
+    ``files`` are those that descriptions name. ``waiting`` has what an event or a timer starts,
+    with its visit and locals, ``unread`` arguments without effect, ``before`` the environment
+    before the launch, ``numbers`` each action that starts a process, with its place and what turns
+    it off. ``idle`` is what conditions keep out, ``off`` what is kept of it; with ``every``
+    conditions do not count. ``later`` says what starts it if not the launch itself: after
+    ``events`` and ``delay`` seconds, at an ``event`` of a ``target``. ``switches`` turn it off,
+    ``off_by`` turns it on."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -99,7 +102,7 @@ class Visit(NamedTuple):
 
     @property
     def waits(self) -> Process:
-        """What is waited for; what turns that off turns this off, too."""
+        """What a process waits for; its switches are also those of what it waits for."""
         _, after, above = self.numbers.get(id(self.target), (None, -1, ()))
         switches = tuple(dict.fromkeys((*above, *self.switches)))
         return Process(delay=self.delay, event=self.event, after=after, switches=switches)
@@ -117,7 +120,7 @@ class Visit(NamedTuple):
     def failed(
         self, error: BaseException, message: str = "", parameters: bool = False, fails: bool = False
     ) -> None:
-        """Note an error; ``message`` replaces its own text."""
+        """Note an error, whose text ``message`` may replace."""
         missing = missing_package(error) or missing_module(error)
         known = (message or failure(error), parameters, "", fails, missing, is_unset(error))
         self.notes.append(LaunchNote(self.place, *known))
@@ -130,8 +133,7 @@ def is_wanted(action: Any, context: Any) -> bool:
 
 
 def text(value: Any, context: Any) -> str:
-    """Return the value of substitutions; empty for none. Raises UnknownError for what is made from
-    a package that is missing here."""
+    """Return the value of substitutions, empty for none; raises UnknownError for missing packages."""
     if value is None:
         return ""
     utilities = of_launch("utilities")
@@ -156,11 +158,11 @@ def _known(value: Any, here: Visit, what: str = "") -> str:
     if made != GONE:
         return made
     if what:
-        _left_out(what, here)
+        _note_unknown(what, here)
     return ""
 
 
-def _left_out(what: str, here: Visit) -> None:
+def _note_unknown(what: str, here: Visit) -> None:
     here.note(f"{what} {NOT_KNOWN}", parameters=True)
 
 
@@ -171,7 +173,7 @@ def node(action: Any, here: Visit) -> LaunchedNode:
     )
     who = f"of {package} {executable}"
     given = ros_arguments([*_command_line(action, who, here)])
-    rules = [*_rules(_node_attribute(action, "remappings"), here), *given.rules]
+    rules = [*_remap_rules(_node_attribute(action, "remappings"), here), *given.rules]
     own = _node_attribute(action, "parameters") or ()
     files = (*given.files, *controller_files(f"{package}/{executable}", given.own))
     return LaunchedNode(
@@ -181,8 +183,8 @@ def node(action: Any, here: Visit) -> LaunchedNode:
         given.namespace or _namespace(_node_attribute(action, "node_namespace"), who, here),
         tuple(rules),
         (
-            *_described(package, given.own),
-            *_parameters(own, here),
+            *_description_in(package, given.own),
+            *_all_parameters(own, here),
             *_parameter_texts(given.values, files, here),
         ),
         "",
@@ -195,14 +197,13 @@ def node(action: Any, here: Visit) -> LaunchedNode:
 
 
 def _environment(action: Any, here: Visit) -> tuple[tuple[str, str], ...]:
-    """Return the environment set for a process, also by the launch before it: launch keeps it as
-    pairs, its stand-in as it is given."""
+    """Return the variables that are set for a process, also by the launch before it."""
     given = getattr(action, "additional_env", None) or ()
     pairs = given.items() if isinstance(given, Mapping) else given
     own = {text(name, here.context): _text(it, here) for name, it in pairs}
     told = {name: _added(value, here.before.get(name, "")) for name, value in own.items()}
     for name in (it for it, value in own.items() if value == GONE):
-        _left_out(f"a part of the environment variable {name}", here)
+        _note_unknown(f"a part of the environment variable {name}", here)
     return tuple({**changed_environment(here), **_variables_after(told)}.items())
 
 
@@ -225,14 +226,14 @@ def _variables_after(found: Mapping[str, str]) -> dict[str, str]:
 def _added(value: str, before: str) -> str:
     """Return a value of the environment, without what it was before."""
     if before and value.startswith(f"{before}{os.pathsep}"):
-        return f":{_folders(value.removeprefix(before).strip(':'))}"
+        return f":{_lasting_folders(value.removeprefix(before).strip(':'))}"
     if before and value.endswith(f"{os.pathsep}{before}"):
-        return f"{_folders(value.removesuffix(before).strip(':'))}:"
-    return _folders(value)
+        return f"{_lasting_folders(value.removesuffix(before).strip(':'))}:"
+    return _lasting_folders(value)
 
 
-def _folders(text_: str) -> str:
-    """Return a list of folders as they are after the launch, each once; another text as it is."""
+def _lasting_folders(text_: str) -> str:
+    """Return a list of folders as they are after the launch, each once; another text unchanged."""
     real = real_paths(text_)
     if real == text_ and GONE not in real:
         return text_
@@ -277,11 +278,10 @@ def seconds(value: Any, here: Visit) -> float:
         return 0.0
 
 
-def _described(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
-    """Yield the description whose file is the first argument of a robot_state_publisher: it is read
-    if no parameter has one (robot_state_publisher jazzy, src/robot_state_publisher.cpp)."""
+def _description_in(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
+    """Yield the description in robot_state_publisher's first argument: used without a parameter."""
     if package == "robot_state_publisher" and words and os.path.isfile(words[0]):
-        yield _values({"robot_description": read_text(words[0])})
+        yield _text_of_values({"robot_description": read_text(words[0])})
 
 
 def component(it: Any, container: str, here: Visit) -> LaunchedNode:
@@ -294,8 +294,8 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
         plugin,
         _known(it.node_name, here, f"the name {who}"),
         _namespace(it.node_namespace, who, here),
-        tuple(_rules(it.remappings or (), here)),
-        tuple(_parameters(own, here)),
+        tuple(_remap_rules(it.remappings or (), here)),
+        tuple(_all_parameters(own, here)),
         f"/{container.lstrip('/')}",
         (),
         here.later,
@@ -353,12 +353,12 @@ def _known_arguments(given: Iterable[Any], who: str, here: Visit) -> Iterator[st
     """Yield the known arguments of a program; the flag before an unknown one is left out, too."""
     words, lost = known_words(lasting(_text(it, here) for it in given))
     for flag in lost:
-        _left_out(f"an argument {who} {flag}".rstrip(), here)
+        _note_unknown(f"an argument {who} {flag}".rstrip(), here)
     yield from words
 
 
 def namespace_of(value: Any, context: Any) -> str:
-    """Return the full namespace, below those that groups push."""
+    """Return a full namespace, below the namespaces that groups push."""
     utilities = of_launch_ros("utilities")
     above = context.launch_configurations.get("ros_namespace")
     own = text(value, context) if value is not None else None
@@ -367,29 +367,30 @@ def namespace_of(value: Any, context: Any) -> str:
 
 
 def _namespace(value: Any, who: str, here: Visit) -> str:
+    """Return the full namespace; the one around, with a note, if it is not known."""
     try:
         return namespace_of(value, here.context)
     except UnknownError:
-        _left_out(f"the namespace {who}", here)
+        _note_unknown(f"the namespace {who}", here)
         return namespace_of(None, here.context)
 
 
-def _rules(rules: Iterable[Any], here: Visit) -> Iterator[tuple[str, str]]:
+def _remap_rules(rules: Iterable[Any], here: Visit) -> Iterator[tuple[str, str]]:
     yield from here.context.launch_configurations.get("ros_remaps", ())
     for pair in rules:
         old, new = (_text(it, here) for it in pair)
         if GONE in (old, new):
-            _left_out(f"a remap rule of {new if old == GONE else old}", here)
+            _note_unknown(f"a remap rule of {new if old == GONE else old}", here)
         else:
             yield old, new
 
 
-def _parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
+def _all_parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
     for it in here.context.launch_configurations.get("global_params", ()):
         if isinstance(it, tuple):
             yield from _parameter_texts([(str(it[0]), str(it[1]))], (), here)
         else:
-            yield from _file(str(it), here)
+            yield from _text_of_file(str(it), here)
     for given in own:
         yield from parameters(given, here)
 
@@ -398,12 +399,13 @@ def parameters(given: Any, here: Visit) -> Iterator[ParameterText]:
     """Yield a parameter file, or values, that an action gives its node."""
     # Values one by one: one that cannot be told does not hide the others.
     for it in given.items() if isinstance(given, dict) else ():
-        yield from _evaluated(dict([it]), here)
+        yield from _evaluated_texts(dict([it]), here)
     if not isinstance(given, dict):
-        yield from _evaluated(given, here)
+        yield from _evaluated_texts(given, here)
 
 
-def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
+def _evaluated_texts(given: Any, here: Visit) -> Iterator[ParameterText]:
+    """Yield a parameter file or values of an action, or note why they are not known."""
     try:
         (found,) = of_launch_ros("utilities").evaluate_parameters(here.context, [given])
         if not isinstance(found, dict | pathlib.PurePath):
@@ -415,26 +417,25 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
         elif isinstance(error, FileNotFoundError) and not missing_package(error):
             # Its folder may be a link to sources, which is gone when this is read.
             path = os.path.realpath(str(error.filename))
-            here.note(_lost(path), parameters=True, file=path)
+            here.note(_lost_message(path), parameters=True, file=path)
         elif not isinstance(given, dict):
             message = f"a parameter file is not known: {failure(error)}"
             here.failed(error, message, parameters=True)
         if isinstance(given, dict):
             names = (text(name, here.context) for name in given)
-            yield from (_values({})._replace(untold=name) for name in names)
+            yield from (_text_of_values({})._replace(untold=name) for name in names)
         return
     if isinstance(found, pathlib.PurePath):
-        yield from _file(str(found), here)
+        yield from _text_of_file(str(found), here)
     else:
-        yield from _of_values(found, here)
+        yield from _texts_of_values(found, here)
 
 
-def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
-    """Yield values as a parameter file has them, and the texts of files that the launch makes and
-    names in a value, such as that of a bridge."""
+def _texts_of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
+    """Yield values as a parameter file has them, and texts of files that the launch makes for them."""
     made = [path for path in found.values() if isinstance(path, str) and is_made(path)]
     for path in filter(os.path.isfile, made):
-        yield from _file(path, here)
+        yield from _text_of_file(path, here)
     # The launch file has written down what stands for a package that is not here, or what is gone.
     texts = {name: repr(value) for name, value in found.items()}
     gone = [
@@ -443,48 +444,49 @@ def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
         # A description may name what the launch makes: it is rewritten.
         if STOOD_FOR in it or (GONE in real_paths(it) and "<" not in it)
     ]
-    yield from (_values({})._replace(untold=name) for name in gone)
+    yield from (_text_of_values({})._replace(untold=name) for name in gone)
     rest = {name: value for name, value in found.items() if name not in gone}
     if rest or not found:
-        yield _values(rest)
+        yield _text_of_values(rest)
     # Keep the parameter files that plugins in descriptions name: they may be gone when these are
     # read.
     for text_ in (it for it in rest.values() if isinstance(it, str)):
         for path in _OF_PLUGIN.findall(text_):
-            here.files.update((path, it) for it in _file(path, here))
+            here.files.update((path, it) for it in _text_of_file(path, here))
 
 
-def _values(values: Any) -> ParameterText:
-    body = {"/**": {"ros__parameters": {name: _plain(it) for name, it in values.items()}}}
+def _text_of_values(values: Any) -> ParameterText:
+    body = {"/**": {"ros__parameters": {name: _plain_value(it) for name, it in values.items()}}}
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
     return ParameterText("", yaml.dump(body, None, dumper, sort_keys=False))
 
 
-def _plain(value: Any) -> Any:
+def _plain_value(value: Any) -> Any:
+    """Return a value with plain types, and paths that outlast the launch."""
     if isinstance(value, dict):
-        return {str(name): _plain(it) for name, it in value.items()}
+        return {str(name): _plain_value(it) for name, it in value.items()}
     if isinstance(value, str):
         # The folder with links to sources is gone when this is read.
         return kept_file(value) or value
     if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
-    return [_plain(it) for it in value]
+    return [_plain_value(it) for it in value]
 
 
 def _parameter_texts(
     values: Iterable[tuple[str, str]], files: Iterable[str], here: Visit
 ) -> Iterator[ParameterText]:
     for path in files:
-        yield from _file(path, here)
+        yield from _text_of_file(path, here)
     if written := params_text(values):
         yield ParameterText("", written)
 
 
-def _file(path: str, here: Visit) -> Iterator[ParameterText]:
+def _text_of_file(path: str, here: Visit) -> Iterator[ParameterText]:
     if not os.path.isfile(path) or os.path.getsize(path) > LIMIT:
         lost = missing_package(FileNotFoundError(path))
         said = f"of the package {lost!r}, which is not installed here, is not known"
-        told = f"a parameter file {said}" if lost else _lost(path)
+        told = f"a parameter file {said}" if lost else _lost_message(path)
         here.note(told, parameters=True, file="" if lost else path)
         return
     source = source_of(path, here.context)
@@ -497,5 +499,5 @@ def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     yield ParameterText("" if is_made(path) else os.path.realpath(path), text_, kept_file(source))
 
 
-def _lost(path: str) -> str:
+def _lost_message(path: str) -> str:
     return f"the parameter file {path!r} is not there"

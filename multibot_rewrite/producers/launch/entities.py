@@ -59,19 +59,19 @@ class Entity:
 def root_of(data: bytes, file: str) -> Entity:
     """Return the root of a launch ``file``; raises what launch raises for another one."""
     if data.lstrip().startswith(b"<"):
-        root = _of_xml(_parsed(data))
+        root = _entity_of_xml(_parse_xml(data))
     else:
         node = compose_yaml(data.decode(), file)
         if not isinstance(node, yaml.MappingNode) or len(node.value) != 1:
             raise RuntimeError("Expected only one root")
         ((key, body),) = node.value
-        root = _of_yaml(str(key.value), line_of(key), body)
+        root = _entity_of_yaml(str(key.value), line_of(key), body)
     if root.tag != "launch":
         raise RuntimeError("Expected 'launch' as root tag")
     return root
 
 
-def _parsed(data: bytes) -> etree._Element:
+def _parse_xml(data: bytes) -> etree._Element:
     try:
         return etree.fromstring(data, etree.XMLParser(resolve_entities=False))
     except etree.XMLSyntaxError as error:
@@ -80,17 +80,17 @@ def _parsed(data: bytes) -> etree._Element:
         raise
 
 
-def _of_xml(element: etree._Element) -> Entity:
+def _entity_of_xml(element: etree._Element) -> Entity:
     values: dict[str, Any] = {str(key): str(value) for key, value in element.attrib.items()}
     for name in [it for it in values if f"{it}{_SEPARATOR}" in values]:
         values[name] = values[name].split(values.pop(f"{name}{_SEPARATOR}"))
-    below = [_of_xml(it) for it in element if isinstance(it.tag, str)]
+    below = [_entity_of_xml(it) for it in element if isinstance(it.tag, str)]
     return Entity(str(element.tag), int(str(element.sourceline or 0)), values, below)
 
 
-def _of_yaml(tag: str, line: int, node: yaml.Node) -> Entity:
+def _entity_of_yaml(tag: str, line: int, node: yaml.Node) -> Entity:
     if isinstance(node, yaml.SequenceNode):
-        return Entity(tag, line, {}, [*_in_list(node)])
+        return Entity(tag, line, {}, [*_entities_in_list(node)])
     if not isinstance(node, yaml.MappingNode):
         raise TypeError(f"Expected a dict or list in {tag!r}")
     values: dict[str, Any] = {}
@@ -99,9 +99,9 @@ def _of_yaml(tag: str, line: int, node: yaml.Node) -> Entity:
     for key, value in node.value:
         name = str(key.value)
         if name == _CHILDREN:
-            below += _in_list(value)
+            below += _entities_in_list(value)
         elif _is_list_of_maps(value):
-            own += [_of_yaml(name, line_of(it), it) for it in value.value]
+            own += [_entity_of_yaml(name, line_of(it), it) for it in value.value]
         else:
             values[name] = _plain(value)
     return Entity(tag, line, values, [*own, *below])
@@ -112,12 +112,12 @@ def _is_list_of_maps(node: yaml.Node) -> bool:
     return any(isinstance(it, yaml.MappingNode) for it in first)
 
 
-def _in_list(node: yaml.Node) -> Iterator[Entity]:
+def _entities_in_list(node: yaml.Node) -> Iterator[Entity]:
     for it in node.value if isinstance(node, yaml.SequenceNode) else ():
         if not isinstance(it, yaml.MappingNode) or len(it.value) != 1:
             one = "a dictionary with only one key, which is the entity type"
             raise RuntimeError(f"Subentities must be {one}")
-        yield from (_of_yaml(str(key.value), line_of(key), value) for key, value in it.value)
+        yield from (_entity_of_yaml(str(key.value), line_of(key), value) for key, value in it.value)
 
 
 def _plain(node: yaml.Node) -> Any:

@@ -80,7 +80,7 @@ def _known(error: BaseException) -> str:
     """Return a known cause and what to do; empty if there are only Python's words."""
     if variable := _variable(error):
         return f"the environment variable {variable} is not set here; set it as for ros2 launch"
-    if name := _no_value(error):
+    if name := _name_without_value(error):
         hint = f"give it with {name}:=VALUE, or where this is included"
         return f"the launch configuration {name!r} is not set; {hint}"
     if stopped := _stopped(error):
@@ -112,7 +112,7 @@ def _lacking(error: BaseException) -> str:
 
 
 def _line(error: BaseException) -> str:
-    """Return the line of a launch file in Python that raised it."""
+    """Return the line of a launch file in Python that raised an error, for a message."""
     # launch has an error of its own around it.
     frames = reversed(_stack_frames(error.__cause__ or error))
     last = next((it for it in frames if it.filename.endswith("launch.py")), None)
@@ -171,17 +171,17 @@ def missing_module(error: BaseException) -> str:
 
 def is_unset(error: BaseException) -> bool:
     """Return whether a launch configuration is not set, or an argument not given."""
-    return bool(_no_value(error))
+    return bool(_name_without_value(error))
 
 
-def _no_value(error: BaseException) -> str:
+def _name_without_value(error: BaseException) -> str:
+    """Return the launch configuration that an error names as not set; or empty."""
     found = _NO_VALUE.search(str(error))
     return (found[1] or found[2]) if found else ""
 
 
 def is_of_file(error: BaseException) -> bool:
-    """Return whether launch fails to read the file, too. It is no program, XML or YAML, it is for
-    ROS 1, or it asks for what is missing or what the fences refuse."""
+    """Return whether launch fails to read the file, too: it is invalid, of ROS 1 or incomplete."""
     own = (
         *(SyntaxError, NameError, RecursionError, FileNotFoundError, PermissionError),
         *(SystemExit, MemoryError, InputError),
@@ -216,8 +216,7 @@ def is_no_condition(error: BaseException) -> bool:
 
 
 def is_certain(error: BaseException, launch_file: str) -> bool:
-    """Return whether the launch fails so on every machine. A file that belongs next to the launch
-    file is missing, or the launch file raises what names no file or device of a machine."""
+    """Return whether it fails on every machine: a file next to it is missing, or its code raises."""
     inner = error.__cause__ or error
     if isinstance(inner, FileNotFoundError):
         folder = os.path.dirname(os.path.realpath(launch_file))

@@ -32,9 +32,10 @@ def launch_findings(
     left: Iterable[NodeFacts],
     passing: Sequence[Passing],
 ) -> Iterator[Finding]:
-    """Yield findings about what is unknown in launch files, launched nodes that are ``unknown``, by
-    their names, with what is ``handed`` to them, and nodes of node sets that are ``left`` out;
-    ``passing`` has the launch files that are missing here, among others."""
+    """Yield findings about what is unknown, missing here, or not started of launch files.
+
+    ``unknown`` are launched nodes by name, with what is ``handed`` to them; ``left`` are nodes of
+    node sets."""
     included = {it.node.package for it in passing if it.node.process.is_include}
     if graph.stood_in:
         place = Place(next((it.place.file for it in graph.nodes), ""), 1)
@@ -80,7 +81,7 @@ def processes_not_known(passing: Iterable[Passing]) -> Iterator[Finding]:
 
 
 def started_twice(it: LaunchedNode, other: LaunchedNode, name: str) -> Finding:
-    """Return that launch files start two nodes of one name."""
+    """Return the finding that launch files start two nodes of one name."""
     where = f"{os.path.basename(other.place.file)}:{other.place.line}"
     message = f"node {name} is started twice, also in {where}"
     hint = "ROS wants one name for each: name the launch file that starts one, or give one another name"
@@ -97,4 +98,5 @@ def not_read(graph: LaunchGraph) -> Iterator[Finding]:
 
 
 def _place(place: Place) -> dict[str, object]:
+    """Return a place as keywords of a finding."""
     return {"file": place.file, "line": place.line, "column": 1}

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a launch file itself gives a process, in texts as parameter files have them: what is built
-gives it the same, for each robot."""
+"""What a launch file itself gives a process, as parameter files have it; a build gives it the same."""
 
 import os
 import re
@@ -48,12 +47,13 @@ _RUNNERS = frozenset(("sudo", "env", "nice", "bash", "sh", "python3", "python", 
 
 
 class HandedOn(NamedTuple):
-    """The parameters that are in no file, the words of the program and its environment, how it runs,
-    and where the launch file has it; ``texts`` are the descriptions among its parameters.
-    ``is_unnamed`` is true if only its code has its name. ``files`` are its parameter files, ``clock``
-    is its ``use_sim_time``, if it is said. ``number`` is its place in the launch,
-    ``program`` are its package and program or class, ``kind`` is what it is known as. ``description``
-    is that of something else than the robot, which it publishes."""
+    """What a launch file gives a node: parameters of no file, arguments, environment, rules.
+
+    ``texts`` are the descriptions among its parameters. ``is_unnamed`` is true if only its code has
+    its name. ``files`` are its parameter files, ``clock`` is its ``use_sim_time``, if it is said.
+    ``number`` is its place in the launch, ``program`` are its package and program or class,
+    ``kind`` is what it is known as. ``description`` is that of something else than the robot, which
+    it publishes."""
 
     values: Mapping[str, Any]
     arguments: tuple[str, ...] = ()
@@ -72,7 +72,7 @@ class HandedOn(NamedTuple):
 
     @property
     def names(self) -> list[str]:
-        """What all of it is called, for people."""
+        """The names of parameters, arguments and variables, for a message."""
         return [*self.values, *self.texts, *self.arguments, *self.environment]
 
 
@@ -87,9 +87,10 @@ class Passing(NamedTuple):
 def handed_on(
     node: LaunchedNode, name: str, of_all: Collection[tuple[str, str]] = (), number: int = -1
 ) -> HandedOn:
-    """Return what a launch file gives a node that is called so, but for the files that are there
-    without the launch: these are rewritten, and what they set later counts. ``of_all`` is the
-    environment of all processes."""
+    """Return what a launch file gives a node of this name, without the files that outlast it.
+
+    These are rewritten, and what they set later counts. ``of_all`` is the environment of all
+    processes."""
     full = expand(name.rpartition("/")[2], node.namespace, "")
     values: dict[str, Any] = {}
     for it in node.parameters:
@@ -109,13 +110,13 @@ def handed_on(
 
 
 def for_any(it: Any, robot: str) -> Any:
-    """Return what a launch for one robot gives, without that robot."""
+    """Return values with a placeholder for the name of a robot."""
     word = re.compile(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])")
     return _each(it, lambda text: word.sub(_ROBOT, text))
 
 
 def for_robot(it: Any, robot: str) -> Any:
-    """Return values with a robot's name filled in."""
+    """Return values with a robot's name in place of the placeholder."""
     return _each(it, lambda text: filled(text, robot))
 
 

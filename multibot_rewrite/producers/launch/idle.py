@@ -35,8 +35,7 @@ _WORD = re.compile(r"[\w./-]+")
 
 
 def switches_of(action: Any, seen: Visit) -> tuple[Switch, ...]:
-    """Return the launch arguments that decide a condition: of one that holds all, if each of them
-    alone turns it off; of another one the only one, if that turns it on. None otherwise."""
+    """Return the arguments that each turn an action off, or the only one that turns it on; or none."""
     watched = _Watched(seen.context)
     with suppress(Exception):
         is_on = is_wanted(action, watched)
@@ -47,8 +46,7 @@ def switches_of(action: Any, seen: Visit) -> tuple[Switch, ...]:
 
 
 def _switch(name: str, action: Any, watched: _Watched) -> Switch:
-    """Return the values of a launch argument that an action starts with, while the others have theirs.
-    Raises ValueError if it starts with all of them, or none."""
+    """Return the values of an argument that start an action; raises ValueError if all or none do."""
     known, default = watched.launch_configurations, str(watched.launch_configurations[name])
     values = {default, *([_OTHER[default]] if default in _OTHER else (_NO_VALUE, *watched.words))}
     on: set[str] = set()
@@ -91,8 +89,7 @@ class _Asked(dict[str, Any]):
 
 
 class _Watched:
-    """A context of which it is known which launch configurations were asked for, and the ``words`` in
-    the texts of what was performed."""
+    """A context that notes which launch configurations are asked for, and ``words`` of texts."""
 
     def __init__(self, context: Any) -> None:
         self.context = context
@@ -100,7 +97,7 @@ class _Watched:
         self.words: set[str] = set()
 
     def perform_substitution(self, substitution: Any) -> Any:
-        """Return what a substitution is here."""
+        """Return the value of a substitution, and note the words in its texts."""
         made = substitution.perform(self)
         self.words.update(_WORD.findall(str(made)))
         return made

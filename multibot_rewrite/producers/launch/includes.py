@@ -86,8 +86,7 @@ _SHARE = re.compile(r"/share/([\w-]+)/")
 
 
 def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
-    """Return the simulator of a package that is missing here, or whose launch file only a build
-    makes: that it starts is known without it, and with which arguments."""
+    """Return the simulator that a missing launch file would start, with the known arguments."""
     path = path_of(include, here.context)
     # A launch file that is here may itself ask for that package, and be called as one of it.
     of_path = _SHARE.findall(path) or [""] * os.path.isfile(path)
@@ -136,14 +135,13 @@ def included(include: Any, here: Visit) -> LaunchInclude:
 
 
 def unread_of(path: str, names: Collection[str], here: Visit) -> None:
-    """Keep those of some arguments that a launch file does not read."""
+    """Note which of these arguments a launch file does not read."""
     for name, near in unread(path, names):
         here.unread.append(UnreadArgument(here.place, os.path.basename(path), name, near))
 
 
 def given(include: Any, context: Any, unknown: str = "") -> dict[str, str]:
-    """Return the arguments of an include with their values, ``unknown`` for an unknown one. Raises
-    TypeError for what is no text, as launch does."""
+    """Return an include's arguments and values (or ``unknown``); raises TypeError for no text."""
     found = {}
     for name, value in include.launch_arguments or ():
         # What only a run tells, or would fail in one for another reason, is passed over.

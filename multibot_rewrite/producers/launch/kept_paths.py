@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Paths that a launch file names, as they are when it has been read; what the files are made of that it
-makes itself, such as RewrittenYaml.
+"""The paths that a launch file names, as they are afterwards; and what its own files are made of.
 
 Source: nav2_common jazzy, launch/rewritten_yaml.py and replace_string.py (``name`` is the file that
-they read); launch_ros jazzy, parameter_descriptions.py (``allow_substs``).
-"""
+they read); launch_ros jazzy, parameter_descriptions.py (``allow_substs``)."""
 
 from __future__ import annotations
 
@@ -28,13 +26,12 @@ _REST = r"[^\s'\"<>:;,|)]*"
 
 
 def is_made(path: str) -> bool:
-    """Return whether it is a file of the launch itself. A text of several lines is no path: a
-    description has thousands of slashes, and each would be a folder to ask for."""
+    """Return whether a path is a file of the launch itself; a text of several lines is no path."""
     return "\n" not in path and os.path.realpath(path).startswith(os.path.realpath(_top()) + os.sep)
 
 
 def _top() -> str:
-    """Return the folder of what is made for launch files: each has its own in it."""
+    """Return the folder in which each launch file has a folder for what it makes."""
     own = tempfile.gettempdir()
     above = os.path.dirname(own)
     return above if os.path.basename(above).startswith(FOLDER) else own
@@ -77,9 +74,7 @@ def kept_file(path: str) -> str:
 
 
 def with_real_paths(it: Any) -> Any:
-    """Return a value with the paths in its texts as they are when the launch is over: in the place of
-    links to the sources of packages the sources, and the launch file's name for a package that is not
-    here (``$(find-pkg-share NAME)``)."""
+    """Return a value whose texts name sources in place of links, and missing packages by name."""
     if isinstance(it, str):
         return real_paths(it)
     if isinstance(it, dict):
@@ -94,24 +89,24 @@ def real_paths(text: str) -> str:
     top = _top()
     if not top or top not in text:
         return text
-    return re.sub(rf"{re.escape(top)}(?:/\d+)?({_REST})", lambda it: _real(it[0], it[1]), text)
+    return re.sub(rf"{re.escape(top)}(?:/\d+)?({_REST})", lambda it: _real_path(it[0], it[1]), text)
 
 
-def _real(path: str, below: str) -> str:
-    """Return what a path stands for that is ``below`` the folder of a launch file."""
+def _real_path(path: str, below: str) -> str:
+    """Return what a path ``below`` a launch file's folder is afterwards: a source, or GONE."""
     first, *inside = below.strip("/").split("/")
     if first == NOT_INSTALLED and len(inside) > 1:
         return "/".join((f"$(find-pkg-share {inside[1]})", *inside[2:]))
     if first != SOURCES or inside[:1] != ["share"]:
         return "/".join((GONE, first, *inside))
     if len(inside) == 1:
-        every = (_behind(it.path) for it in os.scandir(path))
+        every = (_source_of_link(it.path) for it in os.scandir(path))
         return os.pathsep.join(dict.fromkeys(os.path.dirname(it) for it in every if it))
     real = os.path.realpath(path)
-    return real if not is_made(real) else _behind(path) or GONE
+    return real if not is_made(real) else _source_of_link(path) or GONE
 
 
-def _behind(folder: str) -> str:
+def _source_of_link(folder: str) -> str:
     """Return the sources of what is a link, or a folder of links; empty for another one."""
     if os.path.islink(folder):
         real = os.path.realpath(folder)
@@ -119,7 +114,7 @@ def _behind(folder: str) -> str:
     manifest = os.path.join(folder, "package.xml")
     names = [manifest] if os.path.exists(manifest) else []
     names += [it.path for it in os.scandir(folder)] if os.path.isdir(folder) else []
-    return next((os.path.dirname(it) for it in map(_behind, names) if it), "")
+    return next((os.path.dirname(it) for it in map(_source_of_link, names) if it), "")
 
 
 _MAKERS = ("RewrittenYaml", "ReplaceString")
@@ -129,9 +124,9 @@ _MADE_OF = "multibot_made_of"
 def keep_sources() -> None:
     """Note from now on from which file a substitution or a parameter file makes another one."""
     substitution = of_launch("substitution").Substitution
-    substitution.__init__ = _wrapping(substitution.__init__)
+    substitution.__init__ = _noting_constructor(substitution.__init__)
     files = of_launch_ros("parameter_descriptions").ParameterFile
-    files.evaluate = _keeping(files.evaluate, lambda it: it._ParameterFile__param_file)
+    files.evaluate = _note_source(files.evaluate, lambda it: it._ParameterFile__param_file)
 
 
 def source_of(path: str, context: Any) -> str:
@@ -142,18 +137,20 @@ def source_of(path: str, context: Any) -> str:
     return path
 
 
-def _wrapping(made: Callable[..., None]) -> Callable[..., None]:
+def _noting_constructor(made: Callable[..., None]) -> Callable[..., None]:
     @wraps(made)
     def wrapping(self: Any, *words: Any, **options: Any) -> None:
         kind = type(self)
         if kind.__name__ in _MAKERS and not hasattr(kind.perform, "__wrapped__"):
-            kind.perform = _keeping(kind.perform, lambda it: it.name)
+            kind.perform = _note_source(kind.perform, lambda it: it.name)
         made(self, *words, **options)
 
     return wrapping
 
 
-def _keeping(made: Callable[[Any, Any], Any], read: Callable[[Any], Any]) -> Callable[..., Any]:
+def _note_source(made: Callable[[Any, Any], Any], read: Callable[[Any], Any]) -> Callable[..., Any]:
+    """Return a method that also notes which file it makes another one of."""
+
     @wraps(made)
     def keeping(self: Any, context: Any) -> Any:
         path = made(self, context)

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A launched node -> what is known of it, as this program has it with these arguments, or by its
-source.
+"""What is known of a launched node, as its program has it with these arguments, or by its source.
 
 A launch says of the conditions of its endpoints: its program, its command line, the files that its
 parameters name, and who listens. What it does not say stays open. A static_transform_publisher is told
-its frames.
-"""
+its frames."""
 
 from __future__ import annotations
 
@@ -56,12 +54,11 @@ def as_started(node: NodeFacts, executable: str, words: Collection[str]) -> Node
             return given == (it.how == "set")
         return None
 
-    return _as_decided(node, decide)
+    return _with_decided_ends(node, decide)
 
 
 def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given]) -> NodeFacts:
-    """Return the node as the files have it whose paths are in its arguments and parameters. A word
-    that is missing may be in a file that is included."""
+    """Return the node as files in its arguments and parameters have it; what they lack is open."""
     options = dict(pairwise(words))
 
     def decide(it: Condition) -> bool | None:
@@ -71,26 +68,31 @@ def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given])
         paths = (str(given.get(name) or "") for name in it.parameter.split(ALSO))
         return any(_has(path, it.values) for path in paths) or None
 
-    return _as_decided(node, decide)
+    return _with_decided_ends(node, decide)
 
 
 def with_options(words: Sequence[str], values: Mapping[str, Given]) -> Mapping[str, Given]:
     """Return the values with those of the Lua file that is in the arguments."""
-    options = dict(pairwise(words))
-    path = os.path.join(*(options.get(it, "") for it in LUA_FLAGS))
+    path = lua_file(words)
     with suppress(InputError):
         values = {**values, **lua_values(read_file(path), path)} if path else values
     return values
 
 
+def lua_file(words: Sequence[str]) -> str:
+    """Return the path of the Lua file that is in the arguments; empty for none."""
+    options = dict(pairwise(words))
+    return os.path.join(*(options.get(it, "") for it in LUA_FLAGS))
+
+
 def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeFacts:
-    """Return the node as it is if these topics have a subscriber."""
+    """Return the node with the ends that it has while these topics have subscribers."""
 
     def decide(it: Condition) -> bool | None:
         own = it.values if it.how == ":" and it.parameter == HEARD else ()
         return any(resolve_bound(name, TOPIC, bound) in heard for name in own) or None
 
-    return _as_decided(node, decide)
+    return _with_decided_ends(node, decide)
 
 
 def asks_who_listens(node: NodeFacts) -> bool:
@@ -98,7 +100,7 @@ def asks_who_listens(node: NodeFacts) -> bool:
     return any(True for end in node.endpoints for _ in words_in(end.when, HEARD))
 
 
-def _as_decided(node: NodeFacts, decide: Decide) -> NodeFacts:
+def _with_decided_ends(node: NodeFacts, decide: Decide) -> NodeFacts:
     made = [(it, settled(it.when, decide)) for it in node.endpoints]
     ends = tuple(it._replace(when=when) for it, when in made if when is not None)
     return node._replace(endpoints=ends)
@@ -174,8 +176,7 @@ _FLAGS = {"--frame-id": _PARENT, "--child-frame-id": _CHILD}
 
 
 def with_static_transform(node: NodeFacts, words: Sequence[str]) -> NodeFacts:
-    """Return the node with the frames of its arguments, or else of its parameters. Another node
-    stays as it is, and so does one with an unknown frame."""
+    """Return the node with a static transform's frames; unchanged if it is another, or unknown."""
     if node.known != STATIC:
         return node
     named = frames_in(words)
@@ -186,8 +187,7 @@ def with_static_transform(node: NodeFacts, words: Sequence[str]) -> NodeFacts:
 
 
 def frames_in(words: Sequence[str]) -> Mapping[str, str]:
-    """Return the frames in the words of a static_transform_publisher, by their parameters: behind
-    flags, or the last two (tf2_ros jazzy, static_transform_broadcaster_program.cpp)."""
+    """Return the frames in a static_transform_publisher's arguments, by their parameters."""
     flags = {flag: word for flag, word in pairwise(words) if flag.startswith("--")}
     if flags:
         return {_FLAGS[flag]: word for flag, word in flags.items() if flag in _FLAGS}
@@ -195,7 +195,7 @@ def frames_in(words: Sequence[str]) -> Mapping[str, str]:
 
 
 def with_frames(words: Sequence[str], frames: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the words with other frames."""
+    """Return the arguments of a static transform publisher with other frames."""
     named = frames_in(words)
     if not any(word.startswith("--") for word in words):
         return (
@@ -222,9 +222,7 @@ def with_sources(
     orders: Iterable[LaunchOrder],
     release: str,
 ) -> dict[str, NodeFacts]:
-    """Return the known nodes and, by ``package program``, those of launched ``nodes`` that are
-    unknown and whose source is found: below the roots of the ``orders``, or next to their launch
-    files. Raises nothing."""
+    """Return known nodes and, by ``package program``, unknown ones whose source is found."""
     wanted = {(it.package, it.executable): it for it in nodes if not passes(it)}
     unknown = [program for program, it in wanted.items() if known_node(it, (), known) is None]
     if not unknown:

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a launch starts, with all that is known of it, which the rules for launch files ask; and what of
-the models in a simulator is not known."""
+"""What a launch starts, with all that is known of it; and what of simulated models is not known."""
 
 import os
 import shlex
@@ -37,8 +36,7 @@ _NAMING = make_naming("tf-per-robot")
 
 
 class InSimulator(NamedTuple):
-    """A model that the launch spawns: its name, its description, its topics in the simulator, what
-    spawned it with which words (``-x 1``), and where."""
+    """A spawned model: name, description, gz topics, and what spawned it with which ``words``."""
 
     name: str
     text: str
@@ -57,9 +55,9 @@ class World(NamedTuple):
 
 
 class Launched(NamedTuple):
-    """All that a launch starts: as it is written (``graph``), its nodes as they run, the controllers
-    that spawners load, the descriptions, those in the simulator, and the system that it makes in a
-    release. ``bridged`` is what its domain_bridges have in ROS domains: in one view of all domains each
+    """All that a launch starts: as written (``graph``), as it runs, and as the system of a release.
+
+    ``bridged`` is what its domain_bridges have in ROS domains: in one view of all domains each
     would be a second sender, so it is not in the system."""
 
     graph: LaunchGraph
@@ -92,11 +90,12 @@ def file_of(graph: LaunchGraph, text: str) -> str:
 
 def models_in_simulator(models: Models, release: str) -> tuple[InSimulator, ...]:
     """Return the models that a launch spawns, as far as their descriptions are known."""
-    found = (_in_simulator(it, release) for it in models.found if it.spawned)
+    found = (_model_in_simulator(it, release) for it in models.found if it.spawned)
     return tuple([it for it in found if it is not None])
 
 
-def _in_simulator(it: Model, release: str) -> InSimulator | None:
+def _model_in_simulator(it: Model, release: str) -> InSimulator | None:
+    """Return a model with its gz topics; None if its description cannot be read."""
     with suppress(MultibotError):
         document = read_document(it.text.encode(), it.place.file)
         name = it.name or document.root.get("name", "")
@@ -144,7 +143,7 @@ NOT_WHOLE, NOT_KNOWN = "launch-not-whole", "node-not-known"
 
 
 def of_simulator(graph: LaunchGraph, models: Models) -> Iterator[Caveat]:
-    """Yield what makes the view of a simulator incomplete."""
+    """Yield why the view of a simulator may be incomplete."""
     # Plugins of a spawned model are nodes, which a robot brings with it.
     for it in models.lost[:1]:
         text = "nodes that plugins of a spawned model make are not known: its description is not"
@@ -164,6 +163,7 @@ def of_simulator(graph: LaunchGraph, models: Models) -> Iterator[Caveat]:
 
 
 def _unknown_in(file: str, alone: bool) -> str:
+    """Return what is unknown of a world file's models, for a message; or empty."""
     if not os.path.isfile(file):
         return "was not found, so it is unknown what its models send" if os.path.isabs(file) else ""
     with suppress(InputError):

@@ -49,8 +49,7 @@ class Published(NamedTuple):
 
 
 class Model(NamedTuple):
-    """A description that is read. ``name`` is that of the model; ``spawned`` is false where nothing of
-    the launch puts it into a simulator; ``words`` are those of what does."""
+    """A description that is read; ``spawned`` into a simulator with ``words``, or not."""
 
     name: str
     text: str
@@ -80,7 +79,7 @@ def models_of(
         topic = expand(words.get("-topic", ""), it.namespace, "") if "-topic" in words else ""
         text = texts[topic].text if topic in texts else _model_text(words)
         name = words.get("-name", words.get("-entity", ""))
-        moved = _moved(text, words.get("-robot_namespace", ""))
+        moved = _with_namespace(text, words.get("-robot_namespace", ""))
         model = _read_model(name, moved, it.place, release, spawned=True)
         found += [model._replace(text=text, words=said)] if model else []
         lost += [] if model else [it]
@@ -100,9 +99,8 @@ def _of_parameters(it: LaunchedNode) -> Iterator[str]:
                 yield from (f"-{name}", str(value))
 
 
-def _moved(text: str, namespace: str) -> str:
-    """Return the description with the namespace that Classic gives all plugins in it
-    (gazebo_ros_pkgs ros2 gazebo_ros/src/gazebo_ros_factory.cpp, AddNamespace)."""
+def _with_namespace(text: str, namespace: str) -> str:
+    """Return a description with Classic's namespace in its plugins (gazebo_ros_factory.cpp)."""
     if not namespace or not text:
         return text
     try:
@@ -131,8 +129,7 @@ def _read_model(name: str, text: str, place: Place, release: str, spawned: bool)
 
 
 def managers(model: Model, files: Mapping[str, ParameterText]) -> Iterator[LaunchedNode]:
-    """Yield the controller managers that plugins make, as nodes that a launch starts; ``files`` are
-    those that descriptions name."""
+    """Yield controller managers that plugins make, with the ``files`` that descriptions name."""
     plugins = [*read_xml(model.text.encode(), model.place.file).iter("plugin")]
     for node in (it for it in model.reading.nodes if it.manager):
         named = values_at(plugins[node.number], "parameters")
@@ -150,8 +147,7 @@ def rules_of(node: ReadNode) -> Iterator[tuple[str, str]]:
 
 
 def frames_of_plugins(models: Iterable[Model]) -> dict[str, str]:
-    """Return the frame of a plugin node's sensor data, by the node, if the description has it
-    (gazebo_ros_pkgs ros2 gazebo_ros/src/utils.cpp, SensorFrameID)."""
+    """Return by plugin node the frame of its sensor data, if set (utils.cpp, SensorFrameID)."""
     found = {}
     for reading in (it.reading for it in models if it.spawned):
         frames = {it.number: it.name for it in reading.names if it.path == "frame_name"}
@@ -161,8 +157,7 @@ def frames_of_plugins(models: Iterable[Model]) -> dict[str, str]:
 
 
 def sent_by_plugins(models: Iterable[Model]) -> dict[str, list[tuple[str, Edge]]]:
-    """Return the transforms of odometry that nodes of plugins send, by the node, each with its topic
-    (gazebo_ros_pkgs ros2 gazebo_plugins/src/gazebo_ros_diff_drive.cpp, PublishOdometryTf)."""
+    """Return by plugin node its odometry transforms, with topics (PublishOdometryTf)."""
     found: dict[str, list[tuple[str, Edge]]] = {}
     for node in (node for it in models if it.spawned for node in it.reading.nodes):
         topic = next((it.name for it in node.endpoints if it.code_name == _CLASSIC_TF), "")
@@ -176,10 +171,10 @@ def sent_by_plugins(models: Iterable[Model]) -> dict[str, list[tuple[str, Edge]]
 
 def sent_in_simulator(models: Iterable[Model]) -> dict[str, list[Edge]]:
     """Return the transforms that systems of gz send, by the topic in the simulator."""
-    return lists_by_key(sent for it in models if it.spawned for sent in _sent(it))
+    return lists_by_key(sent for it in models if it.spawned for sent in _sent_by_systems(it))
 
 
-def _sent(model: Model) -> Iterator[tuple[str, Edge]]:
+def _sent_by_systems(model: Model) -> Iterator[tuple[str, Edge]]:
     plugins: dict[int, dict[str, str]] = {}
     for it in (*model.reading.names, *model.reading.missed):
         if it.tag == "plugin" and it.kind in (FRAME, TOPIC):

@@ -75,11 +75,13 @@ _SPAWNED = "{} spawns something in addition to the robot, which is not started; 
 
 
 class Launched(NamedTuple):
-    """The nodes of node sets and launch files, what these set for nodes, what each launched node is
-    by its name, the controllers that are spawned by theirs, if that is all that runs, findings, if
-    they start a simulator, or what is for one, what each of them is given by its name, and the
-    processes that are no nodes. ``environment`` is what all processes have, ``placing`` is what
-    puts the robot into its simulator, ``qos`` what parameters of bridges to it set for topics."""
+    """The nodes of node sets and launch files, and what launch files do with them.
+
+    ``given`` is what these set for nodes, ``started`` each launched node and ``spawned`` each
+    controller by its name; with ``whole`` that is all that runs. ``simulated``: they start a
+    simulator, or what is for one. ``processes`` are no nodes, ``environment`` is what all processes
+    have, ``placing`` is what puts the robot into its simulator, ``qos`` what bridges to it set for
+    topics."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[Run, ...]
@@ -114,7 +116,7 @@ def with_launched(
     """Return the nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     spawned, notes = spawned_in(graph.nodes)
     notes = (*graph.notes, *notes, *unread_worlds(graph.nodes))
-    graph = _lasting(graph._replace(notes=notes))
+    graph = _without_lost_arguments(graph._replace(notes=notes))
     each = [(number, it) for number, it in enumerate(graph.nodes) if not passes(it)]
     # The robot's own state publisher is the first one.
     each.sort(key=lambda row: _publishes_another(row[1]))
@@ -136,7 +138,7 @@ def with_launched(
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
     of_all = graph.environment
     own = state_publisher_of([it.facts for it in pairs])
-    handed = {it.facts.name: _handed(it, of_all, own, _is_own(it, release)) for it in pairs}
+    handed = {it.facts.name: _handed_to(it, of_all, own, _is_own(it, release)) for it in pairs}
     numbered = [it._replace(number=at) for at, it in enumerate(graph.nodes)]
     spawning = [it for it in numbered if _is_spawner_of_robot(it)]
     beside = (LaunchNote(it.place, _SPAWNED.format(it.executable)) for it in spawning[1:])
@@ -177,9 +179,10 @@ def _may_spawn(it: _Pair, handed: Mapping[str, HandedOn], release: str) -> bool:
     return called and _DESCRIPTION in (*own.texts, *own.arguments)
 
 
-def _lasting(graph: LaunchGraph) -> LaunchGraph:
-    """Return what launch files start, without arguments that name what only a launch makes; without
-    missing launch files that have such an argument: they do not start without it."""
+def _without_lost_arguments(graph: LaunchGraph) -> LaunchGraph:
+    """Return what launch files start, without arguments that name what only a launch makes.
+
+    A missing launch file with such an argument is left out: it does not start without it."""
     nodes: list[LaunchedNode] = []
     notes: list[LaunchNote] = []
     for it in graph.nodes:
@@ -196,9 +199,9 @@ def _lasting(graph: LaunchGraph) -> LaunchGraph:
 
 
 def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:
-    """Return the nodes, each with a name of its own, and findings about those that are started
-    twice. Of two equal ones the later counts. Another one without a name, or of another program,
-    gets a new name."""
+    """Return the nodes, each with a name of its own, and findings about those started twice.
+
+    Of two equal ones the later counts. One without a name, or of another program, gets a new name."""
     found: dict[str, _Pair] = {}
     findings: list[Finding] = []
     for it in pairs:
@@ -217,7 +220,7 @@ def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:
 
 
 def _given_to(it: LaunchedNode) -> tuple[object, ...]:
-    """Return what a launch file sets for a node, except where it is."""
+    """Return what a launch file sets for a node, without the place."""
     return it.package, it.executable, it.remappings, it.parameters, it.arguments
 
 
@@ -227,11 +230,10 @@ def _is_own(it: _Pair, release: str) -> bool:
     return known not in built_in(release).nodes if known else not it.facts.is_known
 
 
-def _handed(
+def _handed_to(
     it: _Pair, of_all: Collection[tuple[str, str]], publisher: str, is_own: bool
 ) -> HandedOn:
-    """Return what its launch file gives a node; a build gives a known one its name. A publisher of
-    another description than the robot's ``publisher`` keeps it."""
+    """Return what its launch file gives a node; publishers of other descriptions keep these."""
     found = handed_on(it.node, it.facts.name, of_all, it.number)
     if it.facts.known == STATIC:
         found = found._replace(values={**found.values, **frames_in(it.node.arguments)})
@@ -243,7 +245,7 @@ def _handed(
 
 
 def _is_built(it: LaunchedNode) -> bool:
-    """Return whether a build makes it from the robot's own files: a spawner, or of a simulator."""
+    """Return whether a build makes it from the robot's own files: a spawner or a simulator's node."""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
     return is_simulator or is_spawner(it) or _is_spawner_of_robot(it)
 
@@ -253,7 +255,7 @@ def _is_spawner_of_robot(it: LaunchedNode) -> bool:
 
 
 def _stands(include: LaunchedNode, node_set: Iterable[NodeFacts]) -> bool:
-    """Return whether the robot's node set has the nodes of a missing launch file."""
+    """Return whether the robot's node sets have the nodes of a missing launch file."""
     family = _FAMILIES.get(include.package, include.package)
     own = (it.package for it in node_set if it.origin != NO_ORIGIN)
     return any(it == family or (family[-1] == "_" and it.startswith(family)) for it in own)
@@ -262,7 +264,7 @@ def _stands(include: LaunchedNode, node_set: Iterable[NodeFacts]) -> bool:
 def _passing(
     it: LaunchedNode, words: Collection[str], of_all: Collection[tuple[str, str]]
 ) -> Passing:
-    """Return a process with its own environment, and its namespace below the robot's."""
+    """Return a process that is passed on, below the robot's namespace or once for all robots."""
     own = it._replace(environment=tuple(pair for pair in it.environment if pair not in of_all))
     once = bool(once_for_all(it)) and not is_of_robot(it.namespace, words)
     below = own if once else own._replace(namespace=f"/{_below(it.namespace, '', words)}")
@@ -276,14 +278,13 @@ def _under_manager(
     reached = controller_way(release).of_manager
     wide = {it.facts.name: it.node.remappings for it in pairs if reached}
     for it in spawned:
-        manager = _stripped(it.manager.strip("/"), words)
+        manager = _without_word(it.manager.strip("/"), words)
         rules = (*wide.get(manager, ()), *it.rules)
-        yield _stripped(it.full_name.strip("/"), words), it._replace(rules=rules)
+        yield _without_word(it.full_name.strip("/"), words), it._replace(rules=rules)
 
 
 def without_bridges(launched: Launched) -> Launched:
-    """Return the same without the bridges to a simulator: those of a build carry what they carry, with
-    the quality of service that their parameters set."""
+    """Return the same without bridges to a simulator (a build has its own), but their QoS."""
     gone = {
         name for name, it in launched.started.items() if passes_topics_on(it.package, it.executable)
     }
@@ -323,6 +324,7 @@ def _pair(
     known: Mapping[str, NodeFacts],
     words: Collection[str],
 ) -> _Pair:
+    """Return a launched node and what is known of it, as a node of the robot."""
     base = known_node(it, node_set, known)
     own = own_name(it, base)
     check_names(it)
@@ -379,8 +381,7 @@ def _below(namespace: str, name: str, words: Collection[str]) -> str:
 
 
 def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
-    """Return whether a launch file should have started a node. What has no process of its own is
-    not launched, and what no node set is named for is added to every robot."""
+    """Return whether a launch file should start a node: of a node set, with its own process."""
     own = not node.host and not node.plugin and node.name != MANAGER
     return own and node.name not in launched and node.origin != NO_ORIGIN
 
@@ -388,7 +389,7 @@ def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
 def _hosted(
     pairs: Iterable[_Pair], known: Mapping[str, NodeFacts], there: Collection[str]
 ) -> Iterator[NodeFacts]:
-    """Yield the nodes that run inside launched ones, such as costmaps: where these run."""
+    """Yield the nodes that run inside launched ones, such as costmaps, in the namespaces of these."""
     hosts = {it.facts.known: it.facts for it in pairs}
     for node in known.values():
         if node.host and node.host in hosts and node.host != MANAGER and node.name not in there:
@@ -406,13 +407,13 @@ def _controllers(
 ) -> Iterator[Run]:
     """Yield what the launch files set for the controllers that they spawn."""
     own = {_full_name(it.node, it.facts): it.node.parameters for it in pairs}
-    places = {_stripped(it.full_name.strip("/"), words): it.place for it in spawned}
+    places = {_without_word(it.full_name.strip("/"), words): it.place for it in spawned}
     for manager, texts in texts_of(spawned, own):
-        above = _stripped(manager.strip("/"), words)
+        above = _without_word(manager.strip("/"), words)
         documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
         found: dict[str, Run] = {}
         for it in given_nodes(documents, parameters):
-            name = _stripped(it.node, words)
+            name = _without_word(it.node, words)
             if name in places:
                 # As it is started, with the type that a manager of any namespace declares.
                 one = found.get(name, it)
@@ -465,17 +466,18 @@ def _placed(given: Run, place: Place) -> Run:
 
 def without_robot(given: Run, words: Collection[str]) -> Run:
     """Return a node of a file that is for one robot, without the namespace of that robot."""
-    name, manager = (_stripped(it, words) for it in (given.node, given.host_name))
+    name, manager = (_without_word(it, words) for it in (given.node, given.host_name))
     return given._replace(node=name, host_name=manager)
 
 
-def _stripped(name: str, words: Collection[str]) -> str:
+def _without_word(name: str, words: Collection[str]) -> str:
+    """Return a name without the first segment, if that is a word for the robot."""
     above, slash, rest = name.partition("/")
     return rest if slash and above in words else name
 
 
 def _in_process(node: NodeFacts, host: LaunchedNode) -> NodeFacts:
-    """Return the node under its process's rules, which are for all its nodes but controllers."""
+    """Return a node with the rules of its process, which reach all but controllers."""
     if node.host == MANAGER:
         return node
     below = node.name.rpartition("/")[0]

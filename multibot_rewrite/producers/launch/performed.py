@@ -79,7 +79,7 @@ def performed(path: str, launches: Sequence[Launching]) -> list[Performed]:
             module = _loaded(path)
         except (Exception, SystemExit) as error:  # a launch file may raise anything
             return [Performed((), failure(error)) for _ in launches]
-        return [_performed(module, path, it, packages) for it in launches]
+        return [_perform_launch(module, path, it, packages) for it in launches]
 
 
 def share(package: str) -> str:
@@ -122,7 +122,7 @@ class _Packages:
         return f"/{package}"
 
 
-def _performed(module: Any, path: str, it: Launching, packages: _Packages) -> Performed:
+def _perform_launch(module: Any, path: str, it: Launching, packages: _Packages) -> Performed:
     packages.installed = it.installed
     context = LaunchContext(noninteractive=True)
     context.environment.clear()
@@ -193,12 +193,12 @@ class _Seen(NamedTuple):
         return found
 
     def kept(self, it: Kept) -> dict[str, Any]:
-        """Return the values that an action keeps by keyword, evaluated."""
+        """Return the values that an action keeps, evaluated, by keyword."""
         given = {name: vars(it).get(name) for name in (*it.names, *it.others)}
         return self.evaluated({name: one for name, one in given.items() if name != "condition"})
 
     def evaluated(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the values that are there, evaluated."""
+        """Return the values that are not None, evaluated."""
         there = {name: it for name, it in given.items() if it is not None}
         own = there.pop("parameters", None)
         found = {name: self.plain(it) for name, it in there.items()}
@@ -227,8 +227,7 @@ class _Seen(NamedTuple):
         return self.of_action(it)
 
     def of_action(self, it: Any) -> Any:
-        """Return a value that is not plain: for a node with a life cycle its number, for what
-        matches such nodes their numbers."""
+        """Return a value that is not plain; a node with a life cycle is its number."""
         if isinstance(it, LifecycleNode):
             return self.managed.index(it)
         if isinstance(it, ComposableNode):

@@ -27,10 +27,12 @@ def keep_places() -> None:
     """Note from now on for every action and component the line of the launch file that made it."""
     for kind in (of_launch().Action, of_launch_ros("descriptions").ComposableNode):
         if not hasattr(kind.__init__, "__wrapped__"):
-            kind.__init__ = _keeping(kind.__init__)
+            kind.__init__ = _noting_place(kind.__init__)
 
 
-def _keeping(made: Callable[..., None]) -> Callable[..., None]:
+def _noting_place(made: Callable[..., None]) -> Callable[..., None]:
+    """Return a constructor that notes the line of the launch file that calls it."""
+
     @wraps(made)
     def keeping(self: Any, *words: Any, **options: Any) -> None:
         # An action for a robot is made again when it runs.
@@ -42,8 +44,7 @@ def _keeping(made: Callable[..., None]) -> Callable[..., None]:
 
 
 def place_of(action: Any, file: str, what: tuple[str, str] | None = None) -> Place:
-    """Return the place of an action; ``file`` is the launch file that has it, ``what`` its package and
-    executable, by which launch's own action is found in a file that is not Python."""
+    """Return the place of an action in ``file``; if that is not Python, by its package and program."""
     kept = getattr(action, _KEPT, None)
     if isinstance(kept, Place):
         return kept

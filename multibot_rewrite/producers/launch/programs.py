@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is known of the programs that launch files start (``programs.yaml``), and which run once for all
-robots: simulators, map servers, windows, tools."""
+"""What is known of programs in launch files (``programs.yaml``), and which run once for all robots."""
 
 from collections.abc import Collection, Mapping
 from fnmatch import fnmatchcase
@@ -40,8 +39,7 @@ _LOOKS = "it only shows data or forwards an operator's commands"
 
 
 def once_for_all(node: LaunchedNode) -> str:
-    """Return why a process runs once for all robots; empty if each robot has its own, as its container
-    has of the components in it."""
+    """Return why a process runs once for all robots; empty if each robot has its own."""
     if node.container:
         return ""
     if node.process.is_extra:
@@ -63,8 +61,7 @@ def passes(it: LaunchedNode) -> bool:
 
 
 def may_be_off(it: LaunchedNode) -> bool:
-    """May a launch argument of a fleet start it? Not what the fleet starts by itself: the robot's
-    description and controllers, simulators and windows; nor what others are loaded into."""
+    """Return whether an argument may turn it on: no container, and nothing a fleet starts itself."""
     own = is_spawner(it) or it.executable in _OWN or it.package in programs().simulators
     return not (own or it.executable.startswith("component_container"))
 

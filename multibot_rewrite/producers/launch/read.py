@@ -60,8 +60,7 @@ from multibot_rewrite.system.records import Place
 
 
 class UnreadableError(Exception):
-    """The launch file itself cannot be read; the message says why. ``of_file`` says that launch would
-    not read it either, wherever it is installed."""
+    """A launch file cannot be read, and why; ``of_file``: nor can launch, wherever it is."""
 
     def __init__(self, message: str, *, of_file: bool = True) -> None:
         super().__init__(message)
@@ -86,13 +85,13 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     sys.argv = order.command_line
     missing: list[str] = []
     PackageNotFoundError.asked.clear()
-    while (graph := _tried(order, folder, missing)) is None:
+    while (graph := _try_to_read(order, folder, missing)) is None:
         pass
     missing += [it for it in PackageNotFoundError.asked if it not in missing]
     files = (*graph.files, *descriptions_in(reads.paths))
     # What the launch files of these start is known without them.
     off = {it.package for it in graph.off} - graph.packages
-    said = (*_lost(graph.notes), *SIMULATORS, *off)
+    said = (*_lost_packages(graph.notes), *SIMULATORS, *off)
     unsaid = [it for it in missing if it not in said]
     place = Place(os.path.abspath(order.file), 1)
     more = (*map(not_installed, unsaid), *dict.fromkeys(unsure))
@@ -104,10 +103,10 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     return with_real_paths(whole)  # type: ignore[no-any-return]
 
 
-def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
+def _try_to_read(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
     """Return the graph; None if something was ``missing`` that now has a stand-in."""
     try:
-        graph = _visited(_described(order), order)
+        graph = _visited_graph(_described(order), order)
     except UnreadableError:
         raise
     except (Exception, SystemExit) as error:  # a launch file may raise anything
@@ -117,7 +116,7 @@ def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph |
         _stand_in_for(error, folder, missing)
         return None
     # A function of a launch file goes on without them, as the file does.
-    lost = [it for it in _lost(graph.notes) if it not in missing]
+    lost = [it for it in _lost_packages(graph.notes) if it not in missing]
     for name in lost:
         add_empty(name, folder)
         add_unknown(name)
@@ -141,14 +140,13 @@ def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None
     missing.append(name)
 
 
-def _lost(notes: Iterable[LaunchNote]) -> list[str]:
-    """Return the packages that are missing where something was started."""
+def _lost_packages(notes: Iterable[LaunchNote]) -> list[str]:
+    """Return the missing packages that notes name, each once."""
     return list(dict.fromkeys(it.missing for it in notes if it.missing))
 
 
 def read_own(file: str, folder: str) -> LaunchGraph:
-    """Return the graph of a launch file that ``build`` wrote, read by the stand-in in this process;
-    ``folder`` is for temporary files. Raises as ``read_graph``."""
+    """Return the graph of a launch file of ``build``, read in this process, as ``read_graph``."""
     before, find, order = tempfile.tempdir, FindPackageShare.find, LaunchOrder(file)
     with standing_in():
         tempfile.tempdir = folder
@@ -156,7 +154,7 @@ def read_own(file: str, folder: str) -> LaunchGraph:
         FindPackageShare.find = _share  # type: ignore[method-assign, assignment]
         keep_places()
         try:
-            return with_real_paths(_visited(_described(order), order))  # type: ignore[no-any-return]
+            return with_real_paths(_visited_graph(_described(order), order))  # type: ignore[no-any-return]
         except (Exception, SystemExit) as error:  # as above
             raise UnreadableError(failure(error)) from error
         finally:
@@ -172,7 +170,8 @@ def _share(_self: FindPackageShare, package_name: str) -> str:
         return os.path.join(tempfile.gettempdir(), NOT_INSTALLED, "share", package_name)
 
 
-def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
+def _visited_graph(description: Any, order: LaunchOrder) -> LaunchGraph:
+    """Return what visiting a description finds; raises UnreadableError."""
     # Without an argument that the file itself has to be given it is not read.
     for it, includes in getattr(description, ASKED)():
         usual = it.default_value is not None or getattr(it, "_conditionally_included", False)
@@ -232,8 +231,7 @@ def _declared(description: Any) -> tuple[LaunchArgument, ...]:
 
 
 def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
-    """Yield the notes; an included file fails without a launch configuration that nothing before it
-    sets. The file itself may be given one, and what is unknown may set one."""
+    """Yield the notes; a later include fails if it needs a configuration that is surely not set."""
     known = True
     for it in notes:
         unset = it.unset and it.place.file != path

@@ -30,7 +30,7 @@ class Reads(NamedTuple):
 
 
 def keep_reads() -> Reads:
-    """Keep from now on all that is read in this process."""
+    """Keep from now on which files this process reads; return the record that grows."""
     found = Reads([], [])
 
     def opened(event: str, words: tuple[Any, ...]) -> None:
@@ -77,8 +77,7 @@ class _Xacro:
 
 
 def files_read(lines: Iterable[str], reads: Reads) -> tuple[FileRead, ...]:
-    """Return the xacros that ``lines`` of programs and the launch file expand, with their
-    arguments, and other files that it reads, or that a line gives to a vendor's program."""
+    """Return the xacros that ``lines`` of programs and the file expand, and other files read."""
     expanded = {it: xacro_of(it) for it in lines}
     xacros = (*filter(None, expanded.values()), *reads.xacros)
     words = (word for line, it in expanded.items() if it is None for word in line.split())

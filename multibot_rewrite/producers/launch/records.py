@@ -42,10 +42,11 @@ class LaunchOrder(NamedTuple):
 
 
 class ParameterText(NamedTuple):
-    """A parameter file that a node gets, or values that a launch file gives it, in YAML; ``file`` is
-    empty for these, and for a file that the launch makes. ``source`` is the file that is there without
-    the launch: ``file``, or what the launch makes another one of; empty for values. ``untold`` is the
-    parameter whose value only a run tells: there is no text of it."""
+    """A parameter file that a node gets, or values that a launch file gives it, in YAML.
+
+    ``file`` is empty for values, and for a file that the launch makes. ``source`` is the file
+    without the launch: ``file``, or what the launch makes another one of; empty for values.
+    ``untold`` is the parameter whose value only a run tells: there is no text of it."""
 
     file: str
     text: str
@@ -80,10 +81,11 @@ class LaunchedNode(NamedTuple):
 
 
 class LaunchNote(NamedTuple):
-    """Something of a launch file whose nodes are not known, and why; with ``parameters`` the node is
-    known, and what a parameter file sets for it is not: the ``file``, where that is not there.
-    ``fails`` where the launch ends there on every machine. ``missing`` is the package that is not
-    installed here, ``unset`` says that a launch configuration has no value."""
+    """Something of a launch file whose nodes are not known, and why.
+
+    With ``parameters`` the node is known, but not what a parameter ``file`` sets for it. ``fails``
+    where the launch ends there on every machine. ``missing`` is the package that is not installed
+    here, ``unset`` says that a launch configuration has no value."""
 
     place: Place
     message: str
@@ -95,8 +97,7 @@ class LaunchNote(NamedTuple):
 
 
 class UnreadArgument(NamedTuple):
-    """An argument of an include that the launch ``file`` does not read; ``near`` is one that it
-    declares and that is called nearly so."""
+    """An argument that an included ``file`` does not read; ``near`` is a declared one like it."""
 
     place: Place
     file: str
@@ -105,8 +106,7 @@ class UnreadArgument(NamedTuple):
 
 
 class LaunchInclude(NamedTuple):
-    """A launch file that another one includes, with the arguments that it is given: empty for a value
-    that is not known. Of a package that is not here ``file`` is its path from that package on."""
+    """An included launch file (its path from a missing package on), and its arguments."""
 
     place: Place
     file: str
@@ -114,9 +114,7 @@ class LaunchInclude(NamedTuple):
 
 
 class IdleAction(NamedTuple):
-    """Something that a launch file does not start, since its condition does not hold: ``what`` it is,
-    and the launch arguments that the condition asks for, as they are. ``is_off`` is true where what it
-    would start is kept."""
+    """What a condition keeps from starting, and its arguments; ``is_off``: it is kept."""
 
     place: Place
     what: str
@@ -125,13 +123,12 @@ class IdleAction(NamedTuple):
 
     @property
     def why(self) -> str:
-        """Return which arguments decide it."""
+        """Return the values of the arguments that decide its condition."""
         return ", ".join(f"{name}:={value}" for name, value in self.asked) or "its condition"
 
 
 class LaunchArgument(NamedTuple):
-    """An argument that a launch file, or one that it includes, declares: ``default`` is empty where it
-    has none that is known before the launch."""
+    """An argument that a launch file or an include declares; ``default`` is empty if unknown."""
 
     name: str
     default: str
@@ -146,14 +143,16 @@ class FileRead(NamedTuple):
 
 
 class LaunchGraph(NamedTuple):
-    """What launch files start. ``files`` are the parameter files that plugins in descriptions name, by
-    the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
-    launch is not installed and its stand-in read them. ``unread`` are arguments without effect,
-    ``environment`` is what they set for all processes. ``declared`` are the arguments that there are,
-    ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out, ``off`` the
-    nodes of it that one launch argument turns on. ``robots``
-    are the names of several that are started: the nodes are those of the first, without its name.
-    ``imports`` are Python packages that the launch files import and that are not here."""
+    """What launch files start.
+
+    ``files`` are the parameter files that plugins in descriptions name, by the path that they have
+    there, and descriptions that launch files read. ``stood_in`` is true where launch is not
+    installed and its stand-in read them. ``unread`` are arguments without effect, ``environment``
+    is what they set for all processes. ``declared`` are the arguments that there are, ``read`` is
+    what the launch files themselves read, ``idle`` is what conditions keep out, ``off`` the nodes
+    of it that one launch argument turns on. ``robots`` are the names of several that are started:
+    the nodes are those of the first, without its name. ``imports`` are Python packages that the
+    launch files import and that are not here."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -171,7 +170,7 @@ class LaunchGraph(NamedTuple):
 
     @property
     def whole(self) -> bool:
-        """Return whether these are all nodes."""
+        """Return whether all nodes of the launch files are known."""
         return all(it.parameters for it in self.notes)
 
     @property
@@ -187,9 +186,7 @@ class LaunchGraph(NamedTuple):
 
 
 def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
-    """Return the order for arguments of ``ros2 launch``: a file, or a package and a file in it, and
-    ``NAME:=VALUE`` words. Raises UsageError for other words, and for a package or file that does
-    not exist."""
+    """Return the order for arguments of ``ros2 launch``; raises UsageError for wrong ones."""
     try:
         words = shlex.split(text)
     except ValueError:
@@ -234,7 +231,7 @@ def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
 
 
 def _joined_nodes(graphs: Sequence[LaunchGraph], field: str) -> Iterator[LaunchedNode]:
-    """Yield the nodes of all, with the numbers of those that they wait for among all."""
+    """Yield the nodes of all graphs, renumbered so that each waits for the right one."""
     first = 0
     for graph in graphs:
         for it in getattr(graph, field):

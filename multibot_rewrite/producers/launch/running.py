@@ -79,8 +79,7 @@ class Knowledge(NamedTuple):
 
 
 class Running(NamedTuple):
-    """The nodes that a launch starts, hosted ones, controllers and plugins with them; what is not
-    known; the descriptions, those on each topic, and what spawners load."""
+    """The nodes that a launch starts, hosted ones, controllers, plugins; and their descriptions."""
 
     nodes: tuple[Run, ...]
     notes: tuple[LaunchNote, ...]
@@ -98,7 +97,7 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     for at, it in enumerate(started):
         found += _started(it, containers.get(it.container), f"{at}", known)
     unsure = (it for it in started if not it.name or it.later in AT_AN_END)
-    found = [*_apart(found, {full_name(it, None) for it in unsure})]
+    found = [*_with_own_names(found, {full_name(it, None) for it in unsure})]
     descriptions = [*_descriptions(found)]
     models = models_of(graph.nodes, descriptions, known.release)
     asked = {it.manager for it in spawned}
@@ -124,9 +123,8 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
     return Running(nodes, more, models, {it.topic: it.text for it in descriptions}, spawned)
 
 
-def _apart(found: Sequence[Run], unsure: Collection[str]) -> Iterator[Run]:
-    """Yield the nodes; two unknown programs get other names if their shared name is a guess,
-    because only their code has it or one starts after something has ended."""
+def _with_own_names(found: Sequence[Run], unsure: Collection[str]) -> Iterator[Run]:
+    """Yield the nodes; unknown programs whose shared name is a guess get other names."""
     times = Counter(it.full_name for it in found)
     for it in found:
         guessed = not it.has_fact and it.full_name in unsure and times[it.full_name] > 1
@@ -185,8 +183,7 @@ def _simulated(name: str, home: str, fact: NodeFacts, program: str, place: Place
 def _made_by_hardware(
     nodes: Sequence[Run], published: Mapping[str, str], known: Knowledge
 ) -> Iterator[Run]:
-    """Yield the nodes that the hardware of a description makes in the process of its manager: they have
-    no name of their own in the launch file, so the rules of the whole process are theirs."""
+    """Yield the nodes that hardware makes in its manager's process, under its process's rules."""
     for it in nodes:
         if it.fact.known != MANAGER or it.process == SIMULATED:
             continue
@@ -263,8 +260,7 @@ def _started(
 
 
 def _with_values(run: Run) -> NodeFacts:
-    """Return what is known of a node with its parameters and arguments. Where all of its parameters are
-    known, an end whose type they choose has its default."""
+    """Return what is known of a node with its values; an end whose type they choose has its default."""
     if not run.has_fact:
         return run.fact
     made = filled(run.fact, run)._replace(known=run.fact.kind)
@@ -284,9 +280,9 @@ def _controllers(
     if not spawned:
         return
     facts = ((it, None if it.name else known_node(it, (), known.nodes)) for it in started)
-    own = {full_name(it, fact): it.parameters for it, fact in facts}
+    own = {full_name(it, fact): it for it, fact in facts}
     forwarded = controller_way(known.release)
-    for name, texts in texts_of(spawned, own):
+    for name, texts in texts_of(spawned, {name: it.parameters for name, it in own.items()}):
         if name not in managers:
             continue
         manager = managers[name]
@@ -297,11 +293,15 @@ def _controllers(
         active = (it for it in spawned if it.manager == name and not it.inactive)
         # A spawner skips what is loaded already (spawner.py).
         for it in {it.name: it for it in active}.values():
-            mine = _given_to(it, given)
+            mine = _settings_of(it, given)
             wide = manager.rules if forwarded.of_manager else ()
+            # A name that the launch file gives is a rule for every node of the process.
+            is_process = forwarded.process_wide and manager.process != SIMULATED
+            is_named = is_process and own[name].name
             fact = known.nodes.get(mine.fact.known, UNKNOWN)
             yield Run(
-                *("", it.name, manager.namespace, it.name, (*wide, *it.rules)),
+                *("", it.name, manager.namespace, manager.name if is_named else it.name),
+                rules=(*wide, *it.rules),
                 fact=_with_values(mine._replace(fact=fact)),
                 process=manager.process,
                 process_namespace=manager.namespace,
@@ -311,9 +311,8 @@ def _controllers(
             )
 
 
-def _given_to(controller: Spawned, given: Sequence[Run]) -> Run:
-    """Return what the files set for a controller; a manager of any namespace may have its type. A
-    type in its own section counts, though nobody knows it."""
+def _settings_of(controller: Spawned, given: Sequence[Run]) -> Run:
+    """Return what files set for a controller; its type is in its own or any manager's section."""
     mine = next(it for it in given if f"/{it.node}" == controller.full_name)
     own = mine.values.get(OWN_TYPE)
     if not mine.program and own and isinstance(own.value, str):
@@ -324,7 +323,7 @@ def _given_to(controller: Spawned, given: Sequence[Run]) -> Run:
 
 
 def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:
-    """Note managers that no published description starts with a plugin either."""
+    """Note managers that neither the launch nor a plugin of a published description starts."""
     for manager in dict.fromkeys(it.manager for it in lost):
         mine = [it for it in lost if it.manager == manager]
         names = ", ".join(dict.fromkeys(it.name for it in mine))

@@ -29,8 +29,7 @@ def of_first_robot(graph: LaunchGraph) -> LaunchGraph:
 
 
 def with_extras(graph: LaunchGraph) -> LaunchGraph:
-    """Return what launch files start, in which what spawns a file in addition to the robot is
-    marked: the robot is the published description, else the first URDF, else the first file."""
+    """Return the graph; what spawns more than the description, first URDF or file is marked."""
     spawning = [it for it in graph.nodes if program_of(it) in programs().spawners]
     filed = [it for it in spawning if _PUBLISHED.isdisjoint(it.arguments)]
     filed.sort(key=lambda it: not any(word.endswith(".urdf") for word in it.arguments))
@@ -43,15 +42,14 @@ def with_extras(graph: LaunchGraph) -> LaunchGraph:
 
 
 def _robots(nodes: Iterable[LaunchedNode]) -> tuple[str, ...]:
-    """Return the namespaces of state publishers that differ by a number alone; none for fewer than
-    two: ``left`` and ``right`` are parts of one robot."""
+    """Return the namespaces of two or more state publishers that differ by a number alone."""
     homes = (it.namespace.split("/")[1] for it in nodes if it.package == STATE_PUBLISHER)
     alike = lists_by_key((_NUMBER.sub("", it), it) for it in dict.fromkeys(homes) if it)
     return next((tuple(it) for it in alike.values() if len(it) > 1), ())
 
 
 def _names(it: LaunchedNode) -> Iterator[str]:
-    """Yield what may be the name of its robot: its first namespace, its own name and words."""
+    """Yield texts that may name a node's robot: its first namespace, its own name and arguments."""
     yield it.namespace.split("/")[1]
     yield it.name
     for word in it.arguments:

@@ -124,8 +124,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
 
 
 def _parts(nodes: Sequence[Run], inside: Sent) -> tuple[list[_Part], list[str]]:
-    """Return what each node adds, and the nodes that rcl refuses. Some nodes subscribe only while
-    they have subscribers: they are asked again until no topic has a new one."""
+    """Return what each node adds, asked anew while topics get subscribers; and refused nodes."""
     parts, refused = [], []
     for it in nodes:
         try:
@@ -165,15 +164,14 @@ def _heard(nodes: Iterable[Run], sensors: Sequence[SensorFrame]) -> Iterator[Hea
 
 
 def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Heard]:
-    """Yield the frames of sensor data from nodes of plugins."""
+    """Yield the frames of sensor data that nodes of plugins send."""
     for end in (it for part in parts if part.name in frames for it in part.endpoints):
         if end.sure == RUNS and end.role == PUBLISHES and end.type.startswith("sensor_msgs/"):
             yield Heard(end.name, frames[end.node])
 
 
 def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
-    """Yield what a node alone can have: by its parameters, and by the hardware of its description,
-    unless that is a simulated model."""
+    """Yield what a node alone can have, by its parameters and by hardware that is not simulated."""
     node = known.parameters.nodes.get(it.fact.known)
     params = node.params if node else {}
     # One file is often given to all nodes; what these read is known, but for that of their plugins.
@@ -202,6 +200,7 @@ def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
 
 
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Caveat]:
+    """Yield why something may be missing in the graph of a launch."""
     # What several nodes lack is said once, where the first one does.
     first: dict[str, Place] = {}
     for note in (it for it in notes if not it.fails):
@@ -239,6 +238,7 @@ def _of_bridges(nodes: Sequence[Run], inside: Sent) -> Iterator[Caveat]:
 
 
 def _part(it: Run, inside: Sent) -> _Part:
+    """Return what a node adds to the graph; raises UsageError for a name that rcl refuses."""
     bound = bound_of(it.name, it.namespace, it.rules)
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
     bound_of(it.name, it.process_namespace, it.process_rules)
@@ -255,8 +255,7 @@ def _part(it: Run, inside: Sent) -> _Part:
 
 
 def _without_own_time(ends: Sequence[End]) -> Iterator[End]:
-    """Yield the ends without clocks that nobody sends: a simulator around their nodes has the time
-    (gz_ros2_control jazzy gz_ros2_control_plugin.cpp, PostUpdate)."""
+    """Yield the ends without unsent clocks in a simulator, which has the time itself."""
     sent = any(it.role == PUBLISHES and it.name == CLOCK for it in ends if it.sure == RUNS)
     yield from (it for it in ends if sent or it.name != CLOCK or it.process != SIMULATED)
 
@@ -269,9 +268,10 @@ def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
 
 
 def _clocks(nodes: Iterable[Run], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
-    """Yield simulated time by parameter; the default is false (rclcpp time_source.cpp), if all
-    parameters are known; a value that only a run shows is unknown. What sends lasting transforms
-    needs no time, and a bridge passes on the time that is in the data."""
+    """Yield use_sim_time by node: as set, false by default, or unknown.
+
+    What sends lasting transforms needs no time, and a bridge passes on the time that is in the
+    data."""
     notes = [it for it in notes if it.parameters]
     # A file that is lost is told where components are loaded, not at each of them.
     unknown, lost = {it.place for it in notes}, {it.place.file for it in notes if it.file}

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Packages of launch files: a file in one that is named by both; those that are not installed but
-there as sources, as a build installs them, and an empty folder for others.
+"""Packages of launch files: installed, there as sources, or an empty folder for a missing one.
 
 Source: ament_index_python (a file ``share/ament_index/resource_index/packages/NAME`` below a prefix of
 AMENT_PREFIX_PATH stands for a package, its files are in ``share/NAME``). What a build installs is known
 by ``install(DIRECTORY config/ DESTINATION share/x/params)`` in CMakeLists.txt; of a package in Python
-the folders inside of its module are installed with those of the package.
-"""
+the folders inside of its module are installed with those of the package."""
 
 from __future__ import annotations
 
@@ -43,17 +41,16 @@ NOT_INSTALLED = "not_installed"
 def link_sources(file: str, roots: Iterable[str], folder: str) -> None:
     """Link the packages below ``roots``, and those next to the launch ``file``'s, into a folder."""
     for name, path in packages_for(file, roots).items():
-        link_share(name, path, _shared(name, os.path.join(folder, SOURCES)))
+        link_share(name, path, _add_share(name, os.path.join(folder, SOURCES)))
         _has_python(name, path)  # known to the forks that ask for it
 
 
 def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
-    """Make the packages known that ``link_sources`` has linked. What is installed is found first, then
-    what is below the roots."""
+    """Make packages known that ``link_sources`` has linked; what is installed comes first."""
     for name, path in packages_for(file, roots).items():
         if _has_python(name, path):
             sys.path.append(path)
-    _search(os.path.join(folder, SOURCES))
+    _add_prefix(os.path.join(folder, SOURCES))
 
 
 @cache
@@ -71,8 +68,8 @@ def _has_python(name: str, folder: str) -> bool:
 def add_empty(name: str, folder: str) -> None:
     """Add a package that is not installed: its empty share folder has NOT_INSTALLED in its path."""
     prefix = os.path.join(folder, NOT_INSTALLED)
-    os.makedirs(_shared(name, prefix))
-    _search(prefix)
+    os.makedirs(_add_share(name, prefix))
+    _add_prefix(prefix)
 
 
 def add_file(error: BaseException, folder: str) -> bool:
@@ -90,12 +87,13 @@ def add_file(error: BaseException, folder: str) -> bool:
         return True
 
 
-def _search(prefix: str) -> None:
+def _add_prefix(prefix: str) -> None:
     paths = os.environ.get(PREFIXES, "").split(os.pathsep)
     os.environ[PREFIXES] = os.pathsep.join(dict.fromkeys(filter(None, (*paths, prefix))))
 
 
-def _shared(name: str, prefix: str) -> str:
+def _add_share(name: str, prefix: str) -> str:
+    """Register a package below a prefix, and return its share folder."""
     os.makedirs(os.path.join(prefix, _INDEX), exist_ok=True)
     with open(os.path.join(prefix, _INDEX, name), "wb"):
         pass
@@ -115,8 +113,7 @@ ROOTS = "source its workspace, or give the folder of its sources with --roots (l
 
 
 def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:
-    """Return the path of a file in a package that is installed or, as sources, below ``roots``.
-    Raises UsageError unless the package is found and has exactly one file of that name."""
+    """Return a file of a package, installed or below ``roots``; raises UsageError unless one."""
     # What is installed counts first, as for the includes of a launch.
     folders = package_folders(package, os.sep, ()) or package_folders(package, os.sep, roots)
     if not folders:
@@ -162,6 +159,7 @@ def _by_cmake(name: str, folder: str) -> Iterator[tuple[str, str]]:
 
 
 def _by_module(name: str, folder: str) -> Iterator[tuple[str, str]]:
+    """Yield folders of a Python module that are installed as share folders: name and source."""
     module = os.path.join(folder, name)
     if os.path.isfile(os.path.join(folder, "setup.py")) and os.path.isdir(module):
         for it in os.listdir(module):

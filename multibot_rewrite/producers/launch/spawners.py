@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The words behind a program's name -> what rcl makes of them; and the arguments of
-``controller_manager spawner`` -> the controllers that it loads, and their parameters.
+"""The words of programs as rcl reads them; those of spawners -> controllers and parameters.
 
 Source: ros2_control jazzy and humble, controller_manager/spawner.py (``--controller NAME ...`` has
 options of its own; the name of a manager is relative to the spawner's namespace, which it gets by
@@ -35,7 +34,7 @@ class RosArguments(NamedTuple):
 
 
 def ros_arguments(words: Sequence[str]) -> RosArguments:
-    """Return what rcl reads in these words."""
+    """Return the names, rules and parameters that rcl reads in a program's arguments."""
     own: list[str] = []
     given: list[str] = []
     inside = False
@@ -45,13 +44,13 @@ def ros_arguments(words: Sequence[str]) -> RosArguments:
         else:
             (given if inside else own).append(word)
     flags = list(pairwise(given))
-    rules = [_pair(text) for flag, text in flags if flag in _RULE and ":=" in text]
+    rules = [_split_rule(text) for flag, text in flags if flag in _RULE and ":=" in text]
     named = dict(rules)
     return RosArguments(
         named.get("__node", named.get("__name", "")),
         named.get("__ns", ""),
         tuple(it for it in rules if not it[0].startswith("__")),
-        tuple(_pair(text) for flag, text in flags if flag in _VALUE and ":=" in text),
+        tuple(_split_rule(text) for flag, text in flags if flag in _VALUE and ":=" in text),
         tuple(text for flag, text in flags if flag == _FILE),
         tuple(own),
     )
@@ -68,7 +67,7 @@ def ros2_run(words: Sequence[str]) -> tuple[str, str, tuple[str, ...]] | None:
     return (after[0], after[1], tuple(after[2:])) if len(after) > 1 else None
 
 
-def _pair(text: str) -> tuple[str, str]:
+def _split_rule(text: str) -> tuple[str, str]:
     old, _, new = text.partition(":=")
     return old, new
 
@@ -86,10 +85,11 @@ _TIMES = ("--controller-manager-timeout", "--switch-timeout", "--service-call-ti
 
 
 class Spawned(NamedTuple):
-    """A controller that a spawner loads into ``manager`` (a full name): its type where the spawner
-    says it, its parameters, remap rules, what starts the spawner if not the launch itself, where the
-    launch file has that, if it stays inactive, the number of the spawner, how that runs, and its
-    further words."""
+    """A controller that a spawner loads into ``manager`` (a full name).
+
+    Its ``type`` is as the spawner says it. ``later`` says what starts the spawner if not the launch
+    itself, ``place`` where the launch file has it, ``number`` and ``process`` which it is and how
+    it runs, ``words`` are its further words."""
 
     name: str
     manager: str
@@ -105,7 +105,7 @@ class Spawned(NamedTuple):
 
     @property
     def full_name(self) -> str:
-        """It runs in the namespace of its manager."""
+        """Its full name, in the namespace of its manager."""
         return f"{self.manager.rpartition('/')[0]}/{self.name}"
 
 
@@ -119,10 +119,10 @@ class _Parser(argparse.ArgumentParser):
 
 def is_spawner(node: LaunchedNode) -> bool:
     """Return whether a node loads controllers and ends."""
-    return _is_spawner(f"{node.package}/{node.executable}")
+    return _is_spawner_program(f"{node.package}/{node.executable}")
 
 
-def _is_spawner(program: str) -> bool:
+def _is_spawner_program(program: str) -> bool:
     return program.removesuffix(".py") == SPAWNER
 
 
@@ -132,7 +132,7 @@ def spawned_in(nodes: Iterable[LaunchedNode]) -> tuple[tuple[Spawned, ...], tupl
     notes: list[LaunchNote] = []
     for number, node in enumerate(nodes):
         try:
-            own = _spawned(node) if is_spawner(node) else ()
+            own = _controllers_of(node) if is_spawner(node) else ()
             found += (it._replace(number=number, process=node.process) for it in own)
         except ValueError as error:
             notes.append(LaunchNote(node.place, f"the arguments of a spawner are wrong: {error}"))
@@ -145,12 +145,11 @@ def active(spawned: Mapping[str, Spawned]) -> set[str]:
 
 
 def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
-    """Return the files with parameters of controllers that a program (``package/executable``) gets
-    with these arguments; empty if it is no spawner."""
-    if not _is_spawner(program):
+    """Return controllers' parameter files in a program's arguments; empty if it is no spawner."""
+    if not _is_spawner_program(program):
         return ()
     try:
-        every = [it.param_file for it in _each(words)]
+        every = [it.param_file for it in _options_of_each(words)]
     except ValueError:
         return ()
     return tuple(dict.fromkeys(file for files in every for file in files))
@@ -159,9 +158,9 @@ def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
 def texts_of(
     spawned: Iterable[Spawned], given: Mapping[str, Sequence[ParameterText]]
 ) -> Iterator[tuple[str, list[ParameterText]]]:
-    """Yield each manager by its full name, with all parameters that decide its controllers: what it
-    gets itself (``given``, by its name), the files of the spawners, and the types that they
-    give."""
+    """Yield each manager by its full name, with all parameters that decide its controllers.
+
+    They are what it gets itself (``given``), the spawners' files, and the types that they give."""
     by_manager = lists_by_key((it.manager, it) for it in spawned)
     for manager, controllers in by_manager.items():
         named = (text for it in controllers for text in it.parameters)
@@ -174,8 +173,8 @@ def texts_of(
         yield manager, list(dict.fromkeys((*said, *given.get(manager, ()), *named)))
 
 
-def _spawned(node: LaunchedNode) -> Iterator[Spawned]:
-    for given in _each(node.arguments):
+def _controllers_of(node: LaunchedNode) -> Iterator[Spawned]:
+    for given in _options_of_each(node.arguments):
         words = [word for text in given.controller_ros_args for word in text.split()]
         above = given.namespace or node.namespace
         manager = expand(given.controller_manager, above, SPAWNER.rpartition("/")[2])
@@ -187,7 +186,7 @@ def _spawned(node: LaunchedNode) -> Iterator[Spawned]:
             yield made._replace(words=tuple(_further(given)))
 
 
-def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
+def _options_of_each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
     """Yield the options of each controller; raises ValueError for words that the spawner refuses."""
     if _ONE not in words:
         yield _parser(names="+").parse_args(list(words))
@@ -201,7 +200,7 @@ def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
 
 
 def _further(given: argparse.Namespace) -> Iterator[str]:
-    """Yield the words for how a controller is loaded; ``--inactive`` has its own field."""
+    """Yield the options by which a controller is loaded, without ``--inactive``."""
     for flag in _TIMES:
         if value := getattr(given, flag[2:].replace("-", "_"), None):
             yield from (flag, value)
@@ -230,9 +229,7 @@ def _parser(names: str) -> _Parser:
 def under_managers(
     spawned: Iterable[Spawned], started: Collection[str]
 ) -> tuple[list[Spawned], list[Finding]]:
-    """Return the controllers, those of a manager that is not among the ``started`` ones under the one
-    that is meant; as they are where there is none, or more than one. With them findings of spawners
-    that ask for another manager than the one that runs."""
+    """Return the controllers under the one manager that is started, and findings about others."""
     meant = next(iter(started)) if len(started) == 1 else ""
     every = tuple(spawned)
     lost = [it for it in every if meant and it.manager not in started]

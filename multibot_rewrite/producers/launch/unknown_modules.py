@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Python packages that are not installed, for launch files that import them: whatever they have and
-make is a substitution that has no text, so that launch_ros keeps it wherever it is given."""
+"""Missing Python packages of launch files: what they have is a substitution without a text."""
 
 from __future__ import annotations
 
@@ -17,8 +16,7 @@ from multibot_rewrite.system.parameters import ANY_NAME
 
 
 def add_unknown(name: str) -> None:
-    """Make a Python package importable, with every module below it; the Python of a launch file alone
-    is to have it. In YAML that the launch file writes, what is taken of it is a text."""
+    """Make a package importable for a launch file's Python; in YAML its values are a text."""
     sys.meta_path.append(_Finder(name))
     for dumper in ("Dumper", "SafeDumper", "CDumper", "CSafeDumper"):
         if made := getattr(yaml, dumper, None):

@@ -52,8 +52,7 @@ _MOST_EVENTS = 20
 
 
 def visit_all(entity: Any, seen: Visit) -> None:
-    """Visit a description, then what its events and timers start: by then all groups have ended, with
-    their namespaces and launch configurations (launch jazzy, launch_service.py)."""
+    """Visit a description, then what its events and timers start, after all groups have ended."""
     visit(entity, seen)
     while seen.waiting:
         later, here, kept = seen.waiting.pop(0)
@@ -75,12 +74,12 @@ def visit(entity: Any, seen: Visit) -> None:
             return
         here = here._replace(switches=(*seen.switches, *(() if is_off else switches)))
     # An include has the path of its file for what is below it; other actions may leave theirs.
-    own = _is(entity, _INCLUDE)
-    if not own and _is(entity, *_GIVING):
+    own = _is_a(entity, _INCLUDE)
+    if not own and _is_a(entity, *_GIVING):
         # Note a group that is left out: launch itself asks for its condition.
         with suppress(Exception):
             wants(entity, here)
-    apart = seen.every and _is(entity, *_GIVING)
+    apart = seen.every and _is_a(entity, *_GIVING)
     with suppress(Exception):
         apart = apart and not is_wanted(entity, seen.context)
     if own:
@@ -89,7 +88,7 @@ def visit(entity: Any, seen: Visit) -> None:
         seen.context._push_launch_configurations()
     try:
         known, kinds = _handlers(), (it.__name__ for it in type(entity).__mro__)
-        handle = next((known[it] for it in kinds if it in known), _unknown)
+        handle = next((known[it] for it in kinds if it in known), _visit_unknown)
         for below in handle(entity, here) or ():
             visit(below, here)
     except (Exception, SystemExit) as error:
@@ -107,8 +106,7 @@ def visit(entity: Any, seen: Visit) -> None:
 
 
 def _is_kept_off(entity: Any, here: Visit, switch: Switch) -> bool:
-    """Keep what an action would start with the value of an argument that turns it on, if that is known
-    whole, and is nothing that a fleet starts by itself."""
+    """Keep what an action starts when an argument turns it on; return whether that is known."""
     if not (value := value_for(switch)):
         return False
     apart = here._replace(nodes=[], notes=[], waiting=[], unread=[], includes=[], idle=[])
@@ -143,7 +141,7 @@ def _is_kept_off(entity: Any, here: Visit, switch: Switch) -> bool:
 
 def _failed(entity: Any, error: BaseException, here: Visit) -> None:
     """Note why an entity cannot be visited; keep what it starts, if that is known all the same."""
-    if _is(entity, _INCLUDE):
+    if _is_a(entity, _INCLUDE):
         try:
             known = simulator(error, entity, here)
         except TypeError as wrong:
@@ -166,17 +164,17 @@ def _failed(entity: Any, error: BaseException, here: Visit) -> None:
     here.failed(error, message, fails=is_certain(error, here.place.file))
 
 
-def _is(entity: Any, *names: str) -> bool:
+def _is_a(entity: Any, *names: str) -> bool:
     return any(it.__name__ in names for it in type(entity).__mro__)
 
 
 def _execute(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    whatever = seen.every and _is(entity, *_GIVING)
+    whatever = seen.every and _is_a(entity, *_GIVING)
     found: Iterable[Any] | None = (entity.execute if whatever else entity.visit)(seen.context)
     return found
 
 
-def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
+def _visit_include(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not wants(entity, seen):
         return None
     include = included(entity, seen)
@@ -202,7 +200,7 @@ def _add_nothing(entity: Any, seen: Visit) -> None:
     return None
 
 
-def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
+def _visit_node(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not wants(entity, seen):
         return None
     # launch/later.py: an action for a robot gets its options when it runs, or others run in its place.
@@ -216,24 +214,25 @@ def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
 def _visit_container(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not wants(entity, seen):
         return None
-    _node(entity, seen)
+    _visit_node(entity, seen)
     host = seen.nodes[-1]
     full = f"{host.namespace.rstrip('/')}/{host.name}"
-    _components(entity._ComposableNodeContainer__composable_node_descriptions, full, seen)
+    _visit_components(entity._ComposableNodeContainer__composable_node_descriptions, full, seen)
     return None
 
 
-def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
+def _visit_load(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    """Note the components that are loaded into a container of the launch or of another one."""
     if not wants(entity, seen):
         return None
     target = entity._LoadComposableNodes__target_container
-    if _is(target, "ComposableNodeContainer"):
+    if _is_a(target, "ComposableNodeContainer"):
         host = node(target, seen)
         name = f"{host.namespace.rstrip('/')}/{host.name}"
     else:
         # Its service is asked for by launch's own node, which is in no namespace.
         name = f"/{text(target, seen.context).lstrip('/')}"
-    _components(entity._LoadComposableNodes__composable_node_descriptions, name, seen)
+    _visit_components(entity._LoadComposableNodes__composable_node_descriptions, name, seen)
     return None
 
 
@@ -247,18 +246,18 @@ class LoadedComponent(NamedTuple):
     container: str
 
 
-def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit) -> None:
+def _visit_components(descriptions: Iterable[Any] | None, container: str, seen: Visit) -> None:
     for it in descriptions or ():
         condition = it.condition() if callable(getattr(it, "condition", None)) else None
         visit(LoadedComponent(condition, it.package, it.node_plugin, it, container), seen)
 
 
-def _component(entity: Any, seen: Visit) -> None:
+def _visit_component(entity: Any, seen: Visit) -> None:
     if wants(entity, seen):
         seen.nodes.append(component(entity.of, entity.container, seen))
 
 
-def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
+def _visit_process(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if wants(entity, seen):
         for it in process(entity, seen):
             seen.start(entity, it)
@@ -270,11 +269,11 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
     """Keep the actions of a timer or an event handler for the end of the description."""
     if not wants(entity, seen):
         return None
-    timer = _is(entity, "TimerAction")
+    timer = _is_a(entity, "TimerAction")
     handler = entity if timer else entity.event_handler
-    if _is(handler, "OnShutdown"):
+    if _is_a(handler, "OnShutdown"):
         return None
-    actions = entity.actions if timer else _flat(handler.describe()[1])
+    actions = entity.actions if timer else _flat_list(handler.describe()[1])
     word = "after a time" if timer else f"at an event ({type(handler).__name__})"
     if not timer and not actions:
         message = f"what {type(handler).__name__} starts is decided only at run time"
@@ -290,7 +289,7 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -> None:
-    """Keep actions with their context's locals: all for a timer, ours for an event handler."""
+    """Keep actions with their context's locals; for an event handler only those of this package."""
     actions, known = [*actions], seen.context.get_locals_as_dict()
     kept = {key: it for key, it in known.items() if timer or key.startswith(_OURS)}
     if actions and seen.events >= _MOST_EVENTS:
@@ -305,16 +304,16 @@ def _ended(entity: Any, seen: Visit) -> None:
     actions = getattr(entity, "_ExecuteLocal__on_exit", None)
     if not callable(actions):
         seen = seen._replace(delay=0.0, event="OnProcessExit", target=entity)
-        _wait(_flat(actions), "at an event (on_exit)", seen)
+        _wait(_flat_list(actions), "at an event (on_exit)", seen)
 
 
-def _flat(actions: Any) -> list[Any]:
+def _flat_list(actions: Any) -> list[Any]:
     if isinstance(actions, list | tuple):
-        return [below for it in actions for below in _flat(it)]
+        return [below for it in actions for below in _flat_list(it)]
     return [] if actions is None else [actions]
 
 
-def _unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
+def _visit_unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if is_unknown(entity):
         # It makes what it starts in code that is not here.
         entity.perform(seen.context)
@@ -332,11 +331,11 @@ def _handlers() -> Mapping[str, Handler]:
     return {
         **dict.fromkeys(names().executed.split(), _execute),
         **dict.fromkeys(names().passed.split(), _add_nothing),
-        _INCLUDE: _include,
+        _INCLUDE: _visit_include,
         "ComposableNodeContainer": _visit_container,
-        "LoadedComponent": _component,
-        "LoadComposableNodes": _loaded,
-        "Node": _node,
-        **dict.fromkeys(("ExecuteLocal", "ExecuteProcess"), _process),
+        "LoadedComponent": _visit_component,
+        "LoadComposableNodes": _visit_load,
+        "Node": _visit_node,
+        **dict.fromkeys(("ExecuteLocal", "ExecuteProcess"), _visit_process),
         **dict.fromkeys(("RegisterEventHandler", "TimerAction"), _later),
     }

@@ -76,6 +76,7 @@ def _ask(
     end: float,
     stop: threading.Event,
 ) -> dict[str, Answer]:
+    """Return the answers that come in time, by node; the clients made are added to ``clients``."""
     waiting = [it for it in asked if _client(node, it, clients)]
     sent: dict[Question, Any] = {}
     found: dict[str, Answer] = {}
@@ -94,8 +95,7 @@ def _ask(
 
 
 def listed(asked: Question, answer: Any) -> list[Question]:
-    """Return the question for a node's parameters, to compare robots; not for QoS, which the graph
-    shows, nor for what is private."""
+    """Return the question for a node's listed parameters, without QoS and private ones, or nothing."""
     names = sorted(it for it in map(str, answer.result.names) if not _UNASKED.search(it))
     service = asked.service.removesuffix("list_parameters") + "get_parameters"
     own = asked._replace(service=service, type=GET_PARAMETERS, parameters=tuple(names[:MOST]))
@@ -112,7 +112,7 @@ def halves(asked: Question, answer: Any) -> list[Question]:
 
 
 def _client(node: Any, asked: Question, clients: dict[str, Any]) -> bool:
-    """Make a client for the question; whether its type is installed."""
+    """Make a client for the question, and return whether its type is installed."""
     class_, _ = ros.message_class(asked.type)
     if class_ and asked.service not in clients:
         clients[asked.service] = node.create_client(class_, asked.service)
@@ -129,10 +129,11 @@ def _request(asked: Question) -> Any:
 
 
 def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
+    """Return a node's state with the answer to a question."""
     if asked.type == GET_STATE:
         return state._replace(lifecycle=str(answer.current_state.label))
     if asked.type == GET_PARAMETERS:
-        texts = zip(asked.parameters, map(_plain, answer.values), strict=False)
+        texts = zip(asked.parameters, map(_plain_text, answer.values), strict=False)
         said = (Parameter(asked.node, name, text) for name, text in texts if text is not None)
         return state._replace(parameters=tuple(sorted({*state.parameters, *said})))
     if asked.type == LIST_PARAMETERS:
@@ -144,7 +145,7 @@ def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
     return state._replace(controllers=tuple(own))
 
 
-def _plain(value: Any) -> str | None:
+def _plain_text(value: Any) -> str | None:
     """Return the value as the records have it; None for a parameter that is not set."""
     field = _FIELDS.get(value.type)
     if field is None:

@@ -105,7 +105,7 @@ class ObservationClock(NamedTuple):
 
 
 def so_far(names: Sequence[str]) -> str:
-    """Return what is seen of a graph that may be incomplete yet: its nodes, and where they are."""
+    """Return what is seen of a graph that may be incomplete yet: how many nodes, and where they are."""
     spaces = sorted({name.split("/")[1] for name in names if name.count("/") > 1})
     where = f" in {shorten(spaces, SEVERAL)}" if spaces else ""
     return f"{plural(len(names), 'node')}{where} so far"
@@ -122,8 +122,9 @@ def cut_short(names: Sequence[str], endpoints: Iterable[End]) -> Iterator[Caveat
 
 
 def unannounced(announced: int, here: int, nodes: int, lost: int) -> Iterator[Caveat]:
-    """Yield a limitation if fewer participants of this machine ``announced`` themselves than are
-    ``here`` by their ports (both with the observer's); ``nodes`` were seen, datagrams ``lost``."""
+    """Yield a limitation if fewer participants ``announced`` themselves than are ``here`` by ports.
+
+    Both count the observer's own; ``nodes`` were seen, datagrams ``lost``."""
     silent = here - announced
     if silent <= 0:
         return
@@ -165,6 +166,7 @@ def why_settled(
     unsure: bool = False,
 ) -> str:
     """Return why the observation can end, or an empty string; times are seconds since its start.
+
     ``complete``: all that is expected is there; ``quiet``: so long without a change suffices,
     unless the result is ``unsure``: it waited for a processor meanwhile, or two participants see
     different ends."""
@@ -181,9 +183,10 @@ def topics_to_query(
     topics: Mapping[str, Sequence[str]],
     requested: Collection[str],
 ) -> list[str]:
-    """Return the topics to query for endpoints with QoS and process, which is slow. ``topics`` are
-    all topics of the graph with their types. Two nodes with one name hide each other's topics, so
-    then all topics are queried."""
+    """Return the topics to query for QoS and process, which is slow; all if node names repeat.
+
+    ``topics`` are all topics of the graph with their types. Two nodes of one name hide each
+    other's."""
     if len(set(names)) < len(names):
         return sorted(topics)
     sides = sets_by_key((end.name, end.role) for end in endpoints if end.kind == TOPIC)
@@ -257,9 +260,10 @@ def frames(
     rates: Mapping[ReceivedTransform, float] = NO_RATES,
     ages: Mapping[ReceivedTransform, float] = NO_RATES,
 ) -> Iterator[Edge]:
-    """Yield the transforms received, each once a topic; static if it came from a latched
-    subscription. ``of_several`` are those that more than one publisher sends, ``last`` what each
-    was at last, ``rates`` how often it came, ``ages`` how old it was."""
+    """Yield the transforms received, each once a topic; static if it came from a latched subscription.
+
+    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last,
+    ``rates`` how often it came, ``ages`` how old it was."""
     publishers = sets_by_key(
         (end.name, end.node) for end in endpoints if end.kind == TOPIC and end.role == PUBLISHES
     )

@@ -70,9 +70,10 @@ def observe(
     environ: Mapping[str, str],
     tell: Callable[[str | System], None] = lambda _: None,
 ) -> System:
-    """Return a snapshot of the graph with the variables of ``environ``; raises Unusable. ``tell``
-    gets what is seen while the graph is waited for, in words, and as a view that may be incomplete.
-    No process is left running, however this call ends."""
+    """Return a snapshot of the graph with the variables of ``environ``; raises Unusable.
+
+    ``tell`` gets what is seen while the graph is waited for, in words, and as a view that may be
+    incomplete. No process is left running, however this call ends."""
     began = time.monotonic()
     seen = _observe_once(request, environ, tell)
     names = [node.name for node in seen.nodes]
@@ -107,9 +108,10 @@ def _observe_once(
 def watch(
     request: Request, environs: Mapping[int, Mapping[str, str]]
 ) -> Generator[tuple[int, System], None, None]:
-    """Yield snapshots of the graph in each of these environments for ``request.timeout`` seconds,
-    one after each change, with the number of its environment. Raises Unusable. No process is left
-    running once the iterator is closed."""
+    """Yield numbered snapshots of the graph in each environment, after each change; raises Unusable.
+
+    They come for ``request.timeout`` seconds. No process is left running once the iterator is
+    closed."""
     order = to_text(request._replace(watch=True))
     came: SimpleQueue[tuple[int, bytes | Unusable | None]] = SimpleQueue()
     with ExitStack() as stack:

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A few messages a sensor topic, for the frame that their header names and for their rate, and the
-latched descriptions; the function that subscribes is passed in.
+"""A few messages a sensor topic, for frame and rate, and descriptions; by a function passed in.
 
-Images are large: of a message only the frame is kept, and their topic is left at once.
-"""
+Images are large: of a message only the frame is kept, and their topic is left at once."""
 
 import math
 import time
@@ -81,7 +79,7 @@ class SensorTopic(NamedTuple):
 
     @property
     def has_rate(self) -> bool:
-        """Whether it is worth more than one message: small ones, of one publisher, now and then."""
+        """Return whether several messages are worth it: small ones of one publisher, now and then."""
         return (
             self.type != CLOCK_TYPE
             and self.publishers == 1
@@ -120,6 +118,7 @@ def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
 
 
 def _rank(topic: tuple[str, list[End]]) -> tuple[int, str]:
+    """Return the key by which topics are sorted: sensors first."""
     name, ends = topic
     package = ends[0].type.partition("/")[0]
     return PACKAGES.index(package) if package in PACKAGES else -1, name
@@ -186,7 +185,7 @@ class HeaderSamples:
             end()
 
     def _spanned(self, topic: SensorTopic, data: bytes, mark: Mark) -> bool:
-        """Count a message; whether more are wanted for a rate."""
+        """Count a message, and return whether more are wanted for a rate."""
         stamp = read_stamp(data)
         if not stamp or not isinstance(mark, int):
             return False
@@ -262,12 +261,12 @@ class DescriptionSamples:
             self._open.pop(topic)()
 
     def found(self) -> tuple[Description, ...]:
-        """Return what has come, by topic."""
+        """Return the descriptions that have come, by topic."""
         return tuple(self._found[it] for it in sorted(self._found))
 
 
 def described(topic: str, text: str) -> Description:
-    """Return what a URDF names; an empty description for no URDF."""
+    """Return the links and moving joints of a URDF; neither for another text."""
     from lxml import etree  # takes longer than the rest of a look's start
 
     parser = etree.XMLParser(resolve_entities=False, no_network=True)

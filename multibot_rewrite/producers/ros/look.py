@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node in the graph, what it can ask at once (the nodes with their ends), and what it receives
-meanwhile: transforms, and headers if they are asked for."""
+"""A node in the graph: the nodes and ends that it asks for, and the tf and headers it receives."""
 
 import threading
 import time
@@ -31,9 +30,9 @@ LOSSY_AFTER_SECONDS = 1.0
 
 
 class GraphSession(NamedTuple):
-    """A node that observes the graph; ``stop`` is set when the observation has to end, ``tell`` gets
-    what is seen so far: a text, or a snapshot. ``lost``: the datagrams for its domain that this machine
-    had lost before."""
+    """A node that observes the graph, until ``stop`` is set.
+
+    ``tell`` gets what is seen so far, a text or a snapshot; ``lost`` datagrams were lost before."""
 
     ros: ros.Session
     node: Any
@@ -52,17 +51,15 @@ class GraphSession(NamedTuple):
         return int(self.ros.context.get_domain_id())
 
     def over(self) -> bool:
-        """Return whether it has to end, also in the midst of queries."""
+        """Return whether the observation has to end, also in the midst of queries."""
         return self.stop.is_set() or self.now() >= self.request.timeout + GRACE_SECONDS
 
 
 class SecondParticipant:
-    """Another participant of this process that looks at the same graph, where there are other machines:
-    of a network that loses packets the two do not miss the same.
+    """Another participant of this process, which loses other packets where a network loses some.
 
     It joins when another machine is seen first, and is in the graph until ``stack`` is closed.
-    ``lossy``: the two have differed for longer than packets take that arrive.
-    """
+    ``lossy``: the two have differed for longer than packets take that arrive."""
 
     def __init__(self, session: GraphSession, stack: ExitStack) -> None:
         self._session, self._stack = session, stack
@@ -83,6 +80,7 @@ class SecondParticipant:
         return missed
 
     def _joined(self) -> GraphSession | None:
+        """Return its session once another machine is seen; None before."""
         node = self._session.node
         found = queries.participants(node)
         if len(queries.on_this_machine(node, found)) == len(found):
@@ -160,7 +158,7 @@ TF_SECONDS = (1.5, 3.0)
 HEADER_SECONDS = 1.5
 
 
-class Ears:
+class GraphListeners:
     """What is received while the graph is observed: transforms, and headers if they are asked for."""
 
     def __init__(self, session: GraphSession) -> None:
@@ -170,7 +168,7 @@ class Ears:
         self.descriptions = DescriptionSamples(partial(_subscribe_to_last, session))
 
     def update(self, endpoints: Sequence[End]) -> None:
-        """Subscribe to what is published now."""
+        """Subscribe to the topics that are published now."""
         self.tf.update(endpoints, self._request.substitutes)
         if self._request.headers:
             self.headers.update(endpoints)
@@ -181,14 +179,14 @@ class Ears:
         return sorted({*self.tf.silent(), *self.headers.silent()})
 
     def keep_waiting(self) -> bool:
-        """Return whether something may still come."""
+        """Return whether messages may still come on a topic."""
         return self.tf.keep_waiting(*TF_SECONDS) or self.headers.keep_waiting(HEADER_SECONDS)
 
 
 def _subscribe(
     session: GraphSession, topic: str, type_: str, latched: bool, callback: Callback
 ) -> Callable[[], None] | str:
-    """Subscribe to a tf topic: what ends the subscription, or why its type is not usable."""
+    """Subscribe to a tf topic; return what ends the subscription, or why its type is not usable."""
     class_, reason = ros.raw_message_class(type_)
     if not class_:
         return f"{reason}; install tf2_msgs or source ROS 2"

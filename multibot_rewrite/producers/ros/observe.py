@@ -19,7 +19,7 @@ from multibot_rewrite.producers.ros.ask import ask_nodes
 from multibot_rewrite.producers.ros.look import (
     POLL_SECONDS,
     TF_SECONDS,
-    Ears,
+    GraphListeners,
     GraphSession,
     SecondParticipant,
     complete_view,
@@ -107,7 +107,7 @@ def _open_session(
 def take_snapshot(session: GraphSession) -> System:
     """Return a snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
     cache: queries.TopicCache = {}
-    ears = Ears(session)
+    ears = GraphListeners(session)
     with ExitStack() as stack:
         second = SecondParticipant(session, stack)
         why, clock, last, missed = _wait_until_settled(session, cache, ears, second)
@@ -143,7 +143,7 @@ def _unannounced(
 
 def watch(session: GraphSession) -> Iterator[System]:
     """Yield a snapshot after each change, and one when nothing has changed for a while."""
-    ears = Ears(session)
+    ears = GraphListeners(session)
     cache: queries.TopicCache = {}
     before: object = None
     sent: object = None
@@ -180,14 +180,19 @@ def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
 
 
 def _wait_until_settled(
-    session: GraphSession, cache: queries.TopicCache, ears: Ears, second: SecondParticipant
+    session: GraphSession,
+    cache: queries.TopicCache,
+    ears: GraphListeners,
+    second: SecondParticipant,
 ) -> tuple[str, assemble.ObservationClock, Sequence[str], Sequence[str]]:
-    """Wait until the graph is settled; returns why it is, empty if the observation was stopped, the
-    time since the last change: what is late on a busy machine has had the time before, the names
-    that came or went with that change, and the nodes of which a second participant sees something else.
+    """Wait until the graph is settled; return why it is, empty if the observation was stopped.
 
-    The slow queries are made while there is only waiting to do, and tf is received; the cache grows.
-    """
+    Also returns the time since the last change (what is late on a busy machine has had the time
+    before), the names that came or went with it, and nodes that a second participant sees
+    otherwise.
+
+    The slow queries are made while there is only waiting to do, and tf is received; the cache
+    grows."""
     request = session.request
     times, last_change = _ChangeTimes(), assemble.ObservationClock()
     queried: object = None
@@ -205,7 +210,7 @@ def _wait_until_settled(
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
         missed = second.missed(seen) if changed.all < now else ()
-        quiet = _enough(session)
+        quiet = _quiet_seconds(session)
         if second.lossy:
             quiet = assemble.LOSSY_QUIET_SECONDS
         # Not later than the moment at which it is quiet.
@@ -231,10 +236,11 @@ def _wait_until_settled(
     return "", clock, (), ()
 
 
-def _enough(session: GraphSession) -> float:
-    """Return how many seconds without a change are enough: fewer where every participant of this
-    machine has announced itself, the range allows no other machine, and this process has lost nothing
-    that Fast DDS sends again after its heartbeat of 3 s."""
+def _quiet_seconds(session: GraphSession) -> float:
+    """Return how many seconds without a change are enough.
+
+    Fewer are if every participant of this machine has announced itself, no other machine can be
+    seen, and this process lost nothing that Fast DDS sends again after its heartbeat of 3 s."""
     asked = environment.settings(os.environ)
     if asked.range != LOCALHOST or asked.static_peers or asked.discovery_server:
         return assemble.QUIET_SECONDS
@@ -257,7 +263,7 @@ class _ChangeTimes:
     def update(
         self, now: float, view: tuple[list[str], list[End]], request: Request
     ) -> assemble.LastChange:
-        """Return the times after a poll at ``now``."""
+        """Return when the graph last changed, after a poll at ``now``."""
         parts = (view, [end for end in view[1] if request.expects(end)])
         times = zip(self._changed, self._before, parts, strict=True)
         self._changed = assemble.LastChange(
@@ -279,7 +285,7 @@ def _snapshot(
     session: GraphSession,
     names: list[str],
     endpoints: list[End],
-    ears: Ears,
+    ears: GraphListeners,
     settled: tuple[str, float, Sequence[str]],
     more: Iterable[Caveat] = (),
 ) -> System:

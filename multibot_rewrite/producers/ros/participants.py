@@ -35,8 +35,7 @@ def lost_here(domain: int) -> int:
 
 
 def _lost_at(domain: int) -> Mapping[int, int]:
-    """Return the open ports of a domain, counted from its first, each with the datagrams lost there
-    because a buffer was full; empty if unknown."""
+    """Return the datagrams lost at each open port of a domain, counted from its first; or empty."""
     found: dict[int, int] = defaultdict(int)
     for path in TABLES:
         # A machine without IPv6 has no second one.
@@ -49,8 +48,7 @@ def _lost_at(domain: int) -> Mapping[int, int]:
 
 
 def make_room() -> None:
-    """Give the UDP sockets of this process room for what a fleet says at once: Linux has it for some
-    160 datagrams, and what is lost comes again only after a heartbeat of 3 s."""
+    """Enlarge this process's UDP buffers: Linux keeps 160 datagrams, and lost ones cost 3 s."""
     _ask_own(lambda own: own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES))
 
 

@@ -42,8 +42,7 @@ def node_names(node: Any) -> list[str]:
 
 
 def participants(node: Any) -> frozenset[str]:
-    """Return the participants that have announced themselves, with this process's own: each writes
-    on a topic of the middleware which nodes it has."""
+    """Return the participants that announced themselves: each writes which nodes it has."""
     return _participants_of(node.get_publishers_info_by_topic(_OF_PARTICIPANTS, no_mangle=True))
 
 
@@ -55,8 +54,7 @@ def participants_with_topics(node: Any) -> frozenset[str]:
 
 
 def without_nodes(node: Any, ends: Iterable[End]) -> frozenset[str]:
-    """Return the participants that have announced themselves, but have none of the nodes of ``ends``:
-    the message that names their nodes has not come. This process's own are not among them."""
+    """Return the announced participants of others without nodes: their names have not come yet."""
     return participants(node) - _own_participants(node) - {it.process for it in ends}
 
 
@@ -100,8 +98,7 @@ NODE_QUERIES: tuple[NodeQuery, ...] = (
 def endpoints_by_node(
     node: Any, names: Iterable[str], queries: Iterable[NodeQuery], gone: type[Exception]
 ) -> Iterator[End]:
-    """Yield the endpoints of each node; of two nodes with one name rcl shows only the first.
-    ``gone`` is the exception for a node that is not in the graph."""
+    """Yield each node's endpoints, until it is ``gone``; rcl shows the first of two with one name."""
     for name in sorted(set(names)):
         space, _, own = name.rpartition("/")
         # The node may leave the graph between two queries.
@@ -119,9 +116,8 @@ TopicCache = dict[str, tuple[frozenset[End], list[End]]]
 class TopicQueries(NamedTuple):
     """Which topics are always queried, the answers so far, and whether there is no time for more.
 
-    A topic in ``cache`` is not queried again while the endpoints of its nodes are the same; the cache
-    grows.
-    """
+    A topic in ``cache`` is not queried again while the endpoints of its nodes are the same; it
+    grows."""
 
     requested: Collection[str]
     cache: TopicCache
@@ -157,6 +153,7 @@ def with_topic_details(
 def _query_topics(
     node: Any, topics: Iterable[str], found: Iterable[End], asked: TopicQueries
 ) -> dict[str, list[End]]:
+    """Return the endpoints of topics as queried now or before."""
     ends = lists_by_key((end.name, end) for end in found)
     result = {}
     for topic in topics:
@@ -229,6 +226,7 @@ def _shared_qos(
     liveliness: Any,
     lease: int,
 ) -> Qos:
+    """Return the record of a profile, one object for equal ones."""
     return Qos(
         history.name,
         depth,

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A child process that uses rclpy: the request to it, its start and end, and the messages between it
-and the command.
+"""The request to a child process that uses rclpy, its start and end, and the messages between them.
 
 Its order is the first line of its standard input. It ends when that input is closed, on SIGTERM
 and on Ctrl-C, and always leaves the graph cleanly: a process that is killed stays visible in the
 graph for 20 s. Its messages go to standard output, each with its length before it; what libraries
-print goes to standard error.
-"""
+print goes to standard error."""
 
 import json
 import os

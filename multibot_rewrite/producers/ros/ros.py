@@ -147,8 +147,7 @@ def message_class(type_: str) -> tuple[Any, str]:
 
 
 def raw_message_class(type_: str) -> tuple[Any, str]:
-    """Return the class for messages received serialized: the C type support without Python's, which
-    imports numpy for most packages and takes as long as all the rest."""
+    """Return a class with C type support (Python's loads numpy), or None and why there is none."""
     from rosidl_generator_py import import_type_support
     from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
@@ -172,8 +171,7 @@ def _file_name(name: str) -> str:
 
 
 def begins_with_header(type_: str) -> bool:
-    """Return whether the first field of an installed message type is a header: read in its source,
-    without importing anything else."""
+    """Return whether an installed message type begins with a header, by its source alone."""
     package, kind, name = type_.split("/")
     spec = find_spec(package)
     folders = (spec and spec.submodule_search_locations) or ()
@@ -193,9 +191,10 @@ def subscribe(
     callback: Callable[[bytes, int | None], None],
     depth: int = 0,
 ) -> Callable[[], None] | None:
-    """Subscribe to serialized messages, the last ``depth`` of which wait to be received, else as many
-    as a listener to tf keeps; returns what ends it, None where this process reads the topic as another
-    type already. With ``latched`` earlier messages are received too.
+    """Subscribe to serialized messages; return what ends it, None for a topic of another type already.
+
+    ``depth`` of them wait to be received, by default as many as a listener to tf keeps. With
+    ``latched`` earlier messages are received too.
 
     The callback gets a message and its number, by which its publisher counts; None if that is unknown.
     """
@@ -222,20 +221,20 @@ def receive(node: "Node") -> None:
     An executor waits for all of them anew for each message: a millisecond and more in a fleet.
     """
     for subscription in list(node.subscriptions):
-        for message, info in _taken(subscription):
+        for message, info in _messages_of(subscription):
             subscription.callback(message, info)
 
 
-def _taken(subscription: Any) -> Iterator[tuple[bytes, Any]]:
-    """Yield its messages, until there is none, or a callback has ended it."""
+def _messages_of(subscription: Any) -> Iterator[tuple[bytes, Any]]:
+    """Yield the messages of a subscription, until there is none, or a callback has ended it."""
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     with suppress(rclpy_implementation.InvalidHandle):
-        while taken := _take(subscription):
+        while taken := _next_message(subscription):
             yield taken
 
 
-def _take(subscription: Any) -> tuple[bytes, Any] | None:
+def _next_message(subscription: Any) -> tuple[bytes, Any] | None:
     with subscription.handle:
         taken: tuple[bytes, Any] | None
         taken = subscription.handle.take_message(subscription.msg_type, subscription.raw)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subscriptions to the tf topics of a graph, and how often each publisher is heard there; the
-function that subscribes is passed in."""
+"""Subscriptions to the tf topics of a graph (by a function that is passed in), and their rates."""
 
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -51,7 +50,7 @@ class Voices(NamedTuple):
     back: int = 0
 
     def after(self, mark: Mark) -> "Voices":
-        """Return the senders' order with one message more."""
+        """Return what was heard with one message more."""
         if mark is None:
             return self
         return Voices(mark, self.back + _goes_back(self.last, mark))
@@ -62,6 +61,7 @@ class Voices(NamedTuple):
 
 
 def _goes_back(last: Mark, mark: Mark) -> bool:
+    """Return whether a message's mark shows another sender than the last one."""
     if isinstance(last, bytes) and isinstance(mark, bytes):
         return last != mark
     return isinstance(last, int) and isinstance(mark, int) and mark <= last
@@ -77,8 +77,7 @@ Subscribe = Callable[[str, str, bool, Callback], "Callable[[], None] | str"]
 
 
 class TfSubscriptions:
-    """Subscriptions to all tf topics, and the transforms received on them; ``last`` is the last message
-    of each, empty where several latched ones differ, ``ages`` how old each was."""
+    """Subscriptions to all tf topics; ``last`` has each transform, empty if latched ones differ."""
 
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe

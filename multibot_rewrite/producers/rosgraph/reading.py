@@ -64,8 +64,8 @@ def from_message(value: dict[str, Any], file: str) -> System:
     graph = cast(Graph, record_from(Graph, _without_parameters(value), file))
     nodes, ends = [], []
     for node in graph.nodes:
-        nodes.append(Node(_full(node.name, file), ""))
-        ends += [end._replace(name=_full(end.name, file)) for end in _endpoints(node, file)]
+        nodes.append(Node(_checked_name(node.name, file), ""))
+        ends += [end._replace(name=_checked_name(end.name, file)) for end in _ends_of(node, file)]
     caveats = [NO_FRAMES]
     if not any(end.kind == SERVICE for end in ends):
         caveats.append(ONLY_TOPICS)
@@ -97,13 +97,14 @@ def _without_parameters(value: dict[str, Any]) -> dict[str, Any]:
     return {**value, "nodes": kept}
 
 
-def _full(name: str, file: str) -> str:
+def _checked_name(name: str, file: str) -> str:
+    """Return a full name; raises InputError for another one."""
     if not name.startswith("/"):
         raise InputError(f"{file}: {name!r} is not a full name that starts with /")
     return name
 
 
-def _endpoints(node: "NodeMessage", file: str) -> Iterator[End]:
+def _ends_of(node: "NodeMessage", file: str) -> Iterator[End]:
     for role, topics in ((PUBLISHES, node.publishers), (SUBSCRIBES, node.subscriptions)):
         yield from (_topic(it, role, node.name, file) for it in topics)
     for role, services in ((SERVES, node.service_servers), (CALLS, node.service_clients)):

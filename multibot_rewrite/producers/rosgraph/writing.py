@@ -48,10 +48,10 @@ def to_message(snapshot: System) -> dict[str, object]:
     """Return the snapshot as the fields of a message; what a message cannot hold is left out."""
     ends = lists_by_key((end.node, end) for end in snapshot.ends)
     # Of two nodes with a name the first gets all: a message does not say whose an endpoint is.
-    return {"nodes": [_node(it.name, ends.pop(it.name, [])) for it in snapshot.nodes]}
+    return {"nodes": [_node_message(it.name, ends.pop(it.name, [])) for it in snapshot.nodes]}
 
 
-def _node(name: str, ends: Sequence[End]) -> dict[str, object]:
+def _node_message(name: str, ends: Sequence[End]) -> dict[str, object]:
     actions = {(it.role, it.name) for it in ends if it.kind == ACTION}
     parts = {}
     for end in ends:
@@ -123,15 +123,15 @@ def _qos_message(qos: Qos | None) -> dict[str, object]:
         "depth": given.depth,
         "deadline": _duration_message(given.deadline),
         "lifespan": _duration_message(given.lifespan),
-        "history": _number(HISTORY, given.history),
-        "reliability": _number(RELIABILITY, given.reliability),
-        "durability": _number(DURABILITY, given.durability),
-        "liveliness": _number(LIVELINESS, given.liveliness),
+        "history": _number_of_policy(HISTORY, given.history),
+        "reliability": _number_of_policy(RELIABILITY, given.reliability),
+        "durability": _number_of_policy(DURABILITY, given.durability),
+        "liveliness": _number_of_policy(LIVELINESS, given.liveliness),
         "liveliness_lease_duration": _duration_message(given.liveliness_lease_duration),
     }
 
 
-def _number(known: Sequence[str], word: str) -> int:
+def _number_of_policy(known: Sequence[str], word: str) -> int:
     return known.index(word if word in known else UNKNOWN)
 
 

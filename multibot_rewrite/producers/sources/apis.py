@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``calls.txt``: which calls declare an endpoint, one line, one way to declare one;
-``harmless.txt``: which calls are given a node and declare none."""
+"""Which calls of a package declare an endpoint (``calls.txt``), and which do not (``harmless.txt``)."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -25,7 +24,7 @@ class Api(NamedTuple):
 
 @cache
 def apis() -> Mapping[str, tuple[Api, ...]]:
-    """Return the APIs by function."""
+    """Return the calls that declare endpoints, by function."""
     lines = own_text(__file__, "calls.txt").splitlines()
     every = (Api(*line.split()) for line in lines if line and not line.startswith("#"))
     found = lists_by_key((it.function, it) for it in every)

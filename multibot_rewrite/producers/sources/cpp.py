@@ -76,7 +76,8 @@ def read_cpp(text: str, place: Place) -> Source:
 _COLUMNS = (Class, Call, Value, Alias, Constructor, Plugin)
 
 
-def _up(node: Node, *types: str) -> Node | None:
+def _outer(node: Node, *types: str) -> Node | None:
+    """Return the nearest node of one of these types around a node; None without."""
     above = node.parent
     while above is not None and above.type not in types:
         above = above.parent
@@ -91,16 +92,16 @@ def _declarator(node: Node) -> Node | None:
     return found
 
 
-def _around(node: Node) -> tuple[str, str]:
+def _scope_of(node: Node) -> tuple[str, str]:
     """Return the class and function that something is in."""
-    function = node if node.type == "function_definition" else _up(node, "function_definition")
+    function = node if node.type == "function_definition" else _outer(node, "function_definition")
     name = ""
     if function is not None and (declarator := _declarator(function)) is not None:
         full = text_of(declarator.child_by_field_name("declarator"))
         name = last(full) if "operator" not in full else ""
         if "::" in re.sub(r"<[^<>]*>", "", full):
             return last(re.sub(r"<[^<>]*>", "", full).rpartition("::")[0]), name
-    owner = _up(function or node, "class_specifier", "struct_specifier")
+    owner = _outer(function or node, "class_specifier", "struct_specifier")
     return last(text_of(owner.child_by_field_name("name"))) if owner else "", name
 
 
@@ -123,11 +124,11 @@ def _conditions_before(node: Node) -> str:
     while above.parent is not None and above.parent.type != "function_definition":
         below, above = above, above.parent
         if above.type == "if_statement" and below != above.child_by_field_name("condition"):
-            text = _test(above.child_by_field_name("condition"))
+            text = _condition_text(above.child_by_field_name("condition"))
             found.append(negated(text) if below.type == "else_clause" else text)
         elif above.type in _SOMETIMES or (
             # The function may end in a statement before this one.
-            above.type == "compound_statement" and _left_at(above) < below.start_byte
+            above.type == "compound_statement" and _first_exit_in(above) < below.start_byte
         ):
             found.append(OTHERWISE)
     if _is_built_sometimes(above):
@@ -145,32 +146,33 @@ def _is_built_sometimes(node: Node) -> bool:
     return False
 
 
-def _test(node: Node | None) -> str:
+def _condition_text(node: Node | None) -> str:
     """Return a condition as a text: ``<debug_>``, ``!<debug_>``, or that it is another one."""
     while node is not None and node.type in ("condition_clause", "parenthesized_expression"):
         node = node.child_by_field_name("value") or next(iter(node.named_children), None)
     if node is not None and node.type == "unary_expression" and text_of(node)[:1] == "!":
-        return negated(_test(node.child_by_field_name("argument")))
+        return negated(_condition_text(node.child_by_field_name("argument")))
     plain = ("identifier", "field_expression", "call_expression")
     text = evaluated(node) if node is not None and node.type in plain else ""
     return text if text[:1] == "<" and "(" not in text and text != ANY else OTHERWISE
 
 
 @lru_cache(maxsize=256)
-def _left_at(block: Node) -> float:
-    """Return where the first statement of a block begins in which the function may end."""
+def _first_exit_in(block: Node) -> float:
+    """Return where the first statement begins in which the function may end; infinite for none."""
     left = ("if_statement", "preproc_ifdef")
-    found = (it.start_byte for it in block.named_children if it.type in left and _may_leave(it))
+    found = (it.start_byte for it in block.named_children if it.type in left and _may_return(it))
     return next(found, math.inf)
 
 
-def _may_leave(node: Node) -> bool:
+def _may_return(node: Node) -> bool:
+    """Return whether a function may end in this statement."""
     if node.type in _LEAVES:
         return True
-    return any(_may_leave(it) for it in node.named_children if it.type != "lambda_expression")
+    return any(_may_return(it) for it in node.named_children if it.type != "lambda_expression")
 
 
-def _class(node: Node, place: Place) -> Iterator[Class]:
+def _read_class(node: Node, place: Place) -> Iterator[Class]:
     body, name = node.child_by_field_name("body"), node.child_by_field_name("name")
     if body is None or name is None:
         return
@@ -199,7 +201,7 @@ def _at(node: Node, place: Place) -> Place:
     return place._replace(line=node.start_point[0] + 1)
 
 
-def _call(node: Node, place: Place) -> Iterator[Call | Value]:
+def _read_call(node: Node, place: Place) -> Iterator[Call | Value]:
     function = node.child_by_field_name("function")
     arguments = node.child_by_field_name("arguments")
     if function is None:
@@ -208,26 +210,26 @@ def _call(node: Node, place: Place) -> Iterator[Call | Value]:
     given = arguments_of(arguments)
     scope = text_of(function).rpartition("::")[0]
     if name in MAKERS and (types or scope):
-        yield _made(node, types[0] if types else scope, given, place)
+        yield _made_object(node, types[0] if types else scope, given, place)
         return
-    owner, inside = _around(node)
+    owner, inside = _scope_of(node)
     call = Call(
         *(owner, inside, name, types, given, on, _condition(node), _at(node, place)),
         _conditions_before(node),
     )
     yield call
     if NAMES_PARAMETER.fullmatch(name):
-        yield from _parameter(call)
+        yield from _values_of_parameter(call)
 
 
-def _made(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
-    owner, inside = _around(node)
+def _made_object(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
+    owner, inside = _scope_of(node)
     name = "" if MESSAGE.search(type_.partition("<")[0]) else last(type_)
     own = (name, template_arguments(type_), given, "", _condition(node), _at(node, place))
     return Call(owner, inside, *own, _conditions_before(node))
 
 
-def _parameter(call: Call) -> Iterator[Value]:
+def _values_of_parameter(call: Call) -> Iterator[Value]:
     """Yield values of ``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
     texts = [it for it in call.given if not is_node(it)]
     parameter = braced(texts[0]) if texts else ""
@@ -241,54 +243,54 @@ def _parameter(call: Call) -> Iterator[Value]:
         yield Value(*at, f"@{parameter}", texts[1], call.place)
 
 
-def _made_new(node: Node, place: Place) -> Iterator[Call]:
+def _read_new(node: Node, place: Place) -> Iterator[Call]:
     type_ = text_of(node.child_by_field_name("type"))
-    yield _made(node, type_, arguments_of(node.child_by_field_name("arguments")), place)
+    yield _made_object(node, type_, arguments_of(node.child_by_field_name("arguments")), place)
 
 
-def _initialised(node: Node, place: Place) -> Iterator[Call | Value]:
+def _read_initialiser(node: Node, place: Place) -> Iterator[Call | Value]:
     """Yield values and calls of a constructor's ``: member_(value)`` or ``: Base<T>(value)``."""
     name = text_of(node.named_children[0]) if node.named_children else ""
     given = arguments_of(node.named_children[-1])
-    owner, inside = _around(node)
+    owner, inside = _scope_of(node)
     if given:
         yield Value(owner, inside, last(name), given[0], place)
     yield Call(owner, "", last(name), template_arguments(name), given, "", "", _at(node, place))
 
 
-def _declared(node: Node, place: Place) -> Iterator[Call | Value]:
+def _read_declaration(node: Node, place: Place) -> Iterator[Call | Value]:
     """Yield the value or call of ``Type name = value;`` or ``Type name(value);``."""
     declarator, value = (node.child_by_field_name(it) for it in ("declarator", "value"))
     if value is None or declarator is None or node.parent is None:
         return
-    owner, inside = _around(node)
+    owner, inside = _scope_of(node)
     if value.type == "argument_list":
         type_ = text_of(node.parent.child_by_field_name("type"))
         given = arguments_of(value)
-        yield _made(node, type_, given, place)
+        yield _made_object(node, type_, given, place)
         text = given[0] if given else ""
     else:
         text = evaluated(value)
     yield Value(owner, inside, last(text_of(declarator).partition("[")[0]), text, place)
 
 
-def _assigned(node: Node, place: Place) -> Iterator[Value]:
+def _read_assignment(node: Node, place: Place) -> Iterator[Value]:
     left, right = (node.child_by_field_name(it) for it in ("left", "right"))
     plain = text_of(node.child_by_field_name("operator")) == "="
     text = evaluated(right) if plain else ANY
     variable = ".".join(dotted(left)) or evaluated(left).strip("<>")
-    yield Value(*_around(node), variable, text, _at(node, place))
+    yield Value(*_scope_of(node), variable, text, _at(node, place))
 
 
-def _each(node: Node, place: Place) -> Iterator[Value]:
+def _read_loop(node: Node, place: Place) -> Iterator[Value]:
     """Yield the variable of a loop over a range."""
     name = text_of(node.child_by_field_name("declarator")).strip("& ")
-    yield Value(*_around(node), name, ANY, place)
+    yield Value(*_scope_of(node), name, ANY, place)
 
 
-def _default(node: Node, place: Place) -> Iterator[Value]:
+def _read_default(node: Node, place: Place) -> Iterator[Value]:
     """Yield the default of a function's parameter, or of each member of a declaration."""
-    owner, inside = _around(node)
+    owner, inside = _scope_of(node)
     name = ""
     for at, it in enumerate(node.children):
         field = node.field_name_for_child(at)
@@ -298,33 +300,33 @@ def _default(node: Node, place: Place) -> Iterator[Value]:
             yield Value(owner, inside, name, evaluated(it), place)
 
 
-def _alias(node: Node, place: Place) -> Iterator[Alias]:
+def _read_alias(node: Node, place: Place) -> Iterator[Alias]:
     name = text_of(node.child_by_field_name("name") or node.child_by_field_name("declarator"))
     type_ = text_of(node.child_by_field_name("type"))
-    yield Alias(_around(node)[0], name, type_)
+    yield Alias(_scope_of(node)[0], name, type_)
 
 
-def _macro(node: Node, place: Place) -> Iterator[Value]:
+def _read_macro(node: Node, place: Place) -> Iterator[Value]:
     """Yield the value of ``#define TOPIC "scan"``."""
     name, text = (text_of(node.child_by_field_name(it)) for it in ("name", "value"))
     if text[:1] == text[-1:] == '"' and text.count('"') == 2:
         yield Value("", "", name, text[1:-1], place)
 
 
-def _used(node: Node, place: Place) -> Iterator[Alias]:
+def _read_using(node: Node, place: Place) -> Iterator[Alias]:
     """Yield the alias of ``using a_msgs::msg::Scan;``; none of a namespace."""
     name = text_of(node.named_children[-1])
     if MESSAGE.search(name):
-        yield Alias(_around(node)[0], last(name), name)
+        yield Alias(_scope_of(node)[0], last(name), name)
 
 
-def _taking(node: Node, place: Place) -> Iterator[Constructor]:
+def _read_parameters(node: Node, place: Place) -> Iterator[Constructor]:
     """Yield the names of a function's parameters."""
     parameters = node.child_by_field_name("parameters")
     full = text_of(node.child_by_field_name("declarator"))
     if parameters is None:
         return
-    owner, _ = _around(node)
+    owner, _ = _scope_of(node)
     names, defaults = [], []
     for it in parameters.named_children:
         name = re.split(r"[\s&*]", text_of(it.child_by_field_name("declarator")))[-1]
@@ -337,19 +339,19 @@ def _taking(node: Node, place: Place) -> Iterator[Constructor]:
 
 
 HANDLERS: dict[str, Callable[[Any, Place], Iterator[Any]]] = {
-    "class_specifier": _class,
-    "struct_specifier": _class,
-    "call_expression": _call,
-    "new_expression": _made_new,
-    "field_initializer": _initialised,
-    "init_declarator": _declared,
-    "assignment_expression": _assigned,
-    "for_range_loop": _each,
-    "optional_parameter_declaration": _default,
-    "field_declaration": _default,
-    "alias_declaration": _alias,
-    "type_definition": _alias,
-    "preproc_def": _macro,
-    "using_declaration": _used,
-    "function_declarator": _taking,
+    "class_specifier": _read_class,
+    "struct_specifier": _read_class,
+    "call_expression": _read_call,
+    "new_expression": _read_new,
+    "field_initializer": _read_initialiser,
+    "init_declarator": _read_declaration,
+    "assignment_expression": _read_assignment,
+    "for_range_loop": _read_loop,
+    "optional_parameter_declaration": _read_default,
+    "field_declaration": _read_default,
+    "alias_declaration": _read_alias,
+    "type_definition": _read_alias,
+    "preproc_def": _read_macro,
+    "using_declaration": _read_using,
+    "function_declarator": _read_parameters,
 }

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""C++ -> its nodes of syntax; an expression -> a text, as far as the file says it: what is not
-known is in <>. The only import of tree-sitter.
+"""C++ -> its syntax nodes; an expression -> its text, with unknown parts in <>. Imports tree-sitter.
 
 Which functions hand a text on is data: ``SAME_TEXT``, ``LAST_TEXT``; each kind of syntax has a
-function in ``TEXTS``.
-"""
+function in ``TEXTS``."""
 
 from __future__ import annotations
 
@@ -107,15 +105,17 @@ def callee(function: Node) -> tuple[str, tuple[str, ...], str]:
     return last(full), template_arguments(full), "" if on == "<this>" else on
 
 
-def _field(field: str) -> Callable[[Any], str]:
+def _text_of_field(field: str) -> Callable[[Any], str]:
+    """Return a function that returns the text of a node's field."""
     return lambda node: evaluated(node.child_by_field_name(field))
 
 
-def _all(node: Node) -> str:
+def _text_of_children(node: Node) -> str:
     return "".join(evaluated(it) for it in node.named_children)
 
 
-def _called(node: Node) -> str:
+def _text_of_call(node: Node) -> str:
+    """Return the value of a call, such as ``<@parameter>`` or ``<new Class>``."""
     function, arguments = (node.child_by_field_name(it) for it in ("function", "arguments"))
     if function is None:
         return "<?>"
@@ -143,20 +143,20 @@ def _called(node: Node) -> str:
 TEXTS: dict[str, Callable[[Any], str]] = {
     "string_literal": lambda node: text_of(node)[1:-1],
     "user_defined_literal": lambda node: evaluated(node.named_children[0]),
-    "concatenated_string": _all,
-    "initializer_list": _all,
-    "compound_literal_expression": _field("value"),
+    "concatenated_string": _text_of_children,
+    "initializer_list": _text_of_children,
+    "compound_literal_expression": _text_of_field("value"),
     "binary_expression": lambda node: (
-        _all(node) if any(it.type == "+" for it in node.children) else "<?>"
+        _text_of_children(node) if any(it.type == "+" for it in node.children) else "<?>"
     ),
-    "parenthesized_expression": _all,
-    "pointer_expression": _field("argument"),
+    "parenthesized_expression": _text_of_children,
+    "pointer_expression": _text_of_field("argument"),
     "new_expression": lambda node: f"<new {last(text_of(node.child_by_field_name('type')))}>",
     "conditional_expression": lambda node: "<either>",
     "field_expression": lambda node: (
         f"<{'.'.join(dotted(node)) or text_of(node.child_by_field_name('field'))}>"
     ),
-    "call_expression": _called,
+    "call_expression": _text_of_call,
 }
 
 
@@ -170,8 +170,7 @@ def or_read() -> str:
 
 
 def nodes_of(text: str, kinds: tuple[str, ...]) -> list[Node]:
-    """Return the nodes of these kinds, in the order of the text, an inner one before the one around
-    it that begins with it; raises UsageError without tree-sitter."""
+    """Return nodes of these kinds in order, inner first; raises UsageError without tree-sitter."""
     parser, query = _tools(kinds)
     tree = parser.parse(text.encode())
     found = query.captures(tree.root_node).get("found", ())

@@ -81,8 +81,7 @@ LOOKED_UP = "looked up"
 
 
 class NodeSource(NamedTuple):
-    """A node by its source: its facts, the parameters that it declares, frames that its code names, and
-    the files that were read."""
+    """A node by its source: facts, declared parameters, frames of the code, and files read."""
 
     facts: NodeFacts
     params: tuple[Param, ...]
@@ -93,19 +92,20 @@ class NodeSource(NamedTuple):
 def node_of_program(
     folder: str, package: str, program: str, packages: Packages, release: str
 ) -> NodeSource | None:
-    """Return what a program of a package, or a component by its class, does by its source below
-    ``folder``; None without one. ``packages`` are those whose files may be followed. Raises
-    UsageError where C++ cannot be read here."""
+    """Return what a program or component of a package does, by its source; None without source.
+
+    ``packages`` are those whose files may be followed. Raises UsageError if C++ cannot be read."""
     start = start_of(folder, program)
     if start is None:
         return None
     read = read_program(start.files, packages)
     names = names_of(read.source)
     events = [*_events(names, start)]
-    return _node(package, program, start, read, names, events, release)
+    return _node_source(package, program, start, read, names, events, release)
 
 
 def _events(names: Names, start: Start) -> Iterator[Event]:
+    """Yield what a program does from its start on."""
     if start.class_:
         found = names.classes.get(start.class_, ())
         own = [it for it in found if it.place.path == start.path] or [*found]
@@ -117,7 +117,7 @@ def _events(names: Names, start: Start) -> Iterator[Event]:
     yield from events_of(names, [begin._replace(function=it) for it in functions])
 
 
-def _node(
+def _node_source(
     package: str,
     program: str,
     start: Start,
@@ -147,7 +147,7 @@ def _node(
             surest[key] = other._replace(when=PERHAPS)
     ends = tuple(surest.values())
     params = tuple(_params(names, events, read.source.values))
-    sends, of_sends = _sends(names, events)
+    sends, of_sends = _sent_transforms(names, events)
     both = {it.parameter: it for it in (*_frames(names, events), *of_sends)}
     known, frames = built_in_nodes(release), []
     for frame in both.values():
@@ -179,10 +179,12 @@ def _node(
 
 
 def _at(place: Place) -> str:
+    """Return a place as ``path:line``."""
     return f"{place.path}:{place.line}"
 
 
 def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
+    """Yield the endpoints that a declaration in a source makes."""
     when = _condition(names, it.spot, it.asked)
     type_ = it.type
     action = "/action/" in type_ or (not type_ and it.api.function in _ACTIONS)
@@ -203,7 +205,7 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
         return
     images = it.api.function in _CAMERAS and type_ == IMAGE
     for name, parameter, more in (
-        one for word in _each(it.name) for one in _names_by_setting(names, it.spot, word)
+        one for word in _names_in_rounds(it.name) for one in _names_by_setting(names, it.spot, word)
     ):
         both = joined(when, more) if when and more else when or more
         end = bare._replace(name=name, parameter=parameter, when=both, transport=images)
@@ -215,7 +217,7 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
             yield own._replace(parameter="", beside=name if has_release("kilted+", release) else "")
 
 
-def _each(text: str) -> Iterator[str]:
+def _names_in_rounds(text: str) -> Iterator[str]:
     """Yield a name in each round of its loop."""
     _, mark, rest = text.partition(f"<{EACH}{LIST}")
     words, _, _ = rest.partition(">")
@@ -223,7 +225,7 @@ def _each(text: str) -> Iterator[str]:
         yield text
         return
     for it in words.split("|"):
-        yield from _each(text.replace(f"<{EACH}{LIST}{words}>", it))
+        yield from _names_in_rounds(text.replace(f"<{EACH}{LIST}{words}>", it))
 
 
 def _names_by_setting(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, str]]:
@@ -232,7 +234,7 @@ def _names_by_setting(names: Names, spot: Spot, text: str) -> Iterator[tuple[str
     params = [it.partition(">")[0] for it in parts[1:]]
     asked = list(dict.fromkeys(it[1:] for it in params if it.startswith("@") and "{" not in it))
     if len(asked) != len(set(params)):
-        yield _unknown(text), "", ""
+        yield _placeholder(text), "", ""
         return
     defaults = {it: default_of(names, spot, it) for it in asked}
     known = text
@@ -254,16 +256,17 @@ def _names_by_setting(names: Names, spot: Spot, text: str) -> Iterator[tuple[str
             said = (f"{it}{SET if it in given else ' unset'}" for it in reversed(asked))
             yield name, "", AND.join(sorted(said, key=lambda it: it.endswith(SET)))
     else:
-        yield _unknown(text), "", ""
+        yield _placeholder(text), "", ""
 
 
-def _unknown(text: str) -> str:
+def _placeholder(text: str) -> str:
+    """Return a text with ``<name>`` for each value that is not known."""
     return text.replace("<@", "<").replace("{", "").replace("}", "")
 
 
 def _condition(names: Names, spot: Spot, asked: str) -> str:
     """Return the condition that an entry would have; what nothing shows is open."""
-    found = [_flag(names, spot, it) for it in filter(None, asked.split("&"))]
+    found = [_flag_condition(names, spot, it) for it in filter(None, asked.split("&"))]
     either = [it for it in found if OR in it]
     if PERHAPS in found or len(either) > 1:
         return PERHAPS
@@ -273,7 +276,7 @@ def _condition(names: Names, spot: Spot, asked: str) -> str:
     return text
 
 
-def _flag(names: Names, spot: Spot, text: str) -> str:
+def _flag_condition(names: Names, spot: Spot, text: str) -> str:
     """Return ``<@debug>`` or ``!<@debug>`` as a condition."""
     wrong, bare = text[:1] == "!", text.lstrip("!")
     if bare == OTHERWISE or not bare.startswith("<@"):
@@ -318,19 +321,18 @@ def _frames(names: Names, events: Iterable[Event]) -> Iterator[FrameParameter]:
             yield FrameParameter(parameter, default, source=(_at(it.place),))
 
 
-def _sends(
+def _sent_transforms(
     names: Names, events: Sequence[Event]
 ) -> tuple[tuple[SentTransform, ...], tuple[FrameParameter, ...]]:
-    """Return the transforms that it sends, by the two frames written into a message that it sends,
-    and their parameters. A frame of the code has no parameter: its name is quoted."""
+    """Return transforms by the frames written into messages, and their parameters or quoted frames."""
     frames_of = (it for it in events if isinstance(it, Looked) and it.role != LOOKED_UP)
     messages = ((it.variable.removesuffix(it.role).rstrip("."), it) for it in frames_of)
     written = lists_by_key(
-        ((_where(it.spot), f"{message} {it.role}"), it) for message, it in messages
+        ((_key_of(it.spot), f"{message} {it.role}"), it) for message, it in messages
     )
     sends, frames = [], []
     for sent in (it for it in events if isinstance(it, Sent)):
-        pair = [written.get((_where(sent.spot), f"{sent.variable} {it}"), []) for it in FRAMES]
+        pair = [written.get((_key_of(sent.spot), f"{sent.variable} {it}"), []) for it in FRAMES]
         if not all(len({it.text for it in rows}) == 1 for rows in pair):
             continue
         words = []
@@ -349,7 +351,7 @@ def _sends(
     return tuple(dict.fromkeys(sends)), tuple(frames)
 
 
-def _where(spot: Spot) -> object:
+def _key_of(spot: Spot) -> object:
     return spot.owner, spot.function, spot.path
 
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program or component of a package -> where it starts in its source: by its setup.py, setup.cfg or
-CMakeLists.txt, or as a file that is installed; and its files: what it imports or includes, as far as
-that is here."""
+"""Where a program starts (setup.py, setup.cfg, CMakeLists.txt, installed files), and its files."""
 
 import ast
 import os
@@ -57,11 +55,11 @@ def _read_source(path: str) -> Source:
         return Source(faults=((place, "cannot be read"),))
     if len(data) > MOST_LETTERS:
         return Source(faults=((place, f"has more than {MOST_LETTERS} letters"),))
-    return _parsed(path, data, changed)
+    return _parsed_once(path, data, changed)
 
 
 @lru_cache(maxsize=512)
-def _parsed(path: str, data: bytes, changed: int) -> Source:
+def _parsed_once(path: str, data: bytes, changed: int) -> Source:
     """Return a file's source, parsed once, however many programs have it."""
     place = Place("", "", path)
     text = data.decode("utf-8", "replace")
@@ -159,7 +157,7 @@ class CmakeCall(NamedTuple):
     folder: str
 
     def after(self, word: str) -> str:
-        """Return the word behind this one; empty for none."""
+        """Return the argument behind this word; empty for none."""
         return self.words[self.words.index(word) + 1] if word in self.words[:-1] else ""
 
 
@@ -168,10 +166,10 @@ def cmake_calls(folder: str) -> tuple[CmakeCall, ...]:
     """Return the calls of the CMakeLists.txt of a package, and of the folders that it adds."""
     own = package_of(os.path.join(folder, LIST))
     known = {**dict.fromkeys(_HERE, folder), **dict.fromkeys(_NAMES, own[0] if own else "")}
-    return tuple(_of_file(folder, known, 0))[:MOST_CALLS]
+    return tuple(_calls_of_file(folder, known, 0))[:MOST_CALLS]
 
 
-def _of_file(folder: str, known: dict[str, str], depth: int) -> Iterator[CmakeCall]:
+def _calls_of_file(folder: str, known: dict[str, str], depth: int) -> Iterator[CmakeCall]:
     text = "\n".join(it.partition("#")[0] for it in start_of_file(folder, LIST).splitlines())
     calls = [(it[1].lower(), it[2]) for it in _CALL.finditer(text)][:MOST_CALLS]
     at = 0
@@ -189,13 +187,13 @@ def _of_file(folder: str, known: dict[str, str], depth: int) -> Iterator[CmakeCa
             at = end
             continue
         call = CmakeCall(name, _argument_words(raw, known), folder)
-        known |= dict(_set_by(call))
+        known |= dict(_variables_set_by(call))
         yield call
         if name == "add_subdirectory" and call.words and depth < DEEPEST:
-            yield from _of_file(os.path.join(folder, call.words[0]), dict(known), depth + 1)
+            yield from _calls_of_file(os.path.join(folder, call.words[0]), dict(known), depth + 1)
 
 
-def _set_by(call: CmakeCall) -> Iterator[tuple[str, str]]:
+def _variables_set_by(call: CmakeCall) -> Iterator[tuple[str, str]]:
     """Yield the variables that a call sets."""
     name, words = call.name, call.words
     if name == "set" and words:
@@ -235,99 +233,100 @@ class Start(NamedTuple):
 
 
 def start_of(folder: str, program: str) -> Start | None:
-    """Return the start of an executable, or of a component by its class, of the package in a
-    folder; None if its source is not found."""
+    """Return where an executable, or a component by its class, starts; None without its source."""
     if "::" in program:
-        return _component(folder, program)
-    calls = (_by_call(folder, it, program) for it in cmake_calls(folder))
-    if found := _of_python(folder, program) or next(filter(None, calls), None):
+        return _component_start(folder, program)
+    calls = (_start_by_call(folder, it, program) for it in cmake_calls(folder))
+    if found := _python_start(folder, program) or next(filter(None, calls), None):
         return found
     # The one file of that name that can be started: a rule for its folder installs it.
     scripts = [it for it in _scripts(folder) if os.path.basename(it) == program]
-    return _begin((scripts[0],)) if len(scripts) == 1 else None
+    return _start_in((scripts[0],)) if len(scripts) == 1 else None
 
 
-def _begin(files: tuple[str, ...], function: str = "", class_: str = "") -> Start:
+def _start_in(files: tuple[str, ...], function: str = "", class_: str = "") -> Start:
     real = tuple(map(os.path.realpath, files))
     return Start(real, real[0], function, class_)
 
 
-def _of_python(folder: str, program: str) -> Start | None:
-    for name, module, function in _entries(folder):
+def _python_start(folder: str, program: str) -> Start | None:
+    for name, module, function in _entry_points(folder):
         if name == program:
             for root in (folder, os.path.join(folder, "src")):
                 for it in module_files(root, module.split(".")):
-                    return _begin((it,), function)
+                    return _start_in((it,), function)
     return None
 
 
 @lru_cache(maxsize=64)
-def _entries(folder: str) -> tuple[tuple[str, str, str], ...]:
+def _entry_points(folder: str) -> tuple[tuple[str, str, str], ...]:
     """Return name, module and function of each entry point."""
     lines = start_of_file(folder, "setup.cfg").splitlines()
-    words = [*_strings(start_of_file(folder, "setup.py")), *lines]
+    words = [*_setup_strings(start_of_file(folder, "setup.py")), *lines]
     found = (_ENTRY.fullmatch(it) for it in words)
     return tuple((it[1], it[2], it[3]) for it in found if it)
 
 
-def _strings(text: str) -> Iterator[str]:
+def _setup_strings(text: str) -> Iterator[str]:
     """Yield the texts of a setup.py, with its constants filled in."""
     try:
         tree = ast.parse(text)
         sets = [it for it in ast.walk(tree) if isinstance(it, ast.Assign)]
         names = [(it.targets[0], it.value) for it in sets]
-        known = {it.id: _constant(value, {}) for it, value in names if isinstance(it, ast.Name)}
-        yield from [_constant(it, known) for it in ast.walk(tree)]
+        known = {it.id: _text_of(value, {}) for it, value in names if isinstance(it, ast.Name)}
+        yield from [_text_of(it, known) for it in ast.walk(tree)]
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return
 
 
-def _constant(node: ast.AST, known: dict[str, str]) -> str:
+def _text_of(node: ast.AST, known: dict[str, str]) -> str:
+    """Return the text of an expression of constants; empty for unknown parts."""
     if isinstance(node, ast.Constant):
         return node.value if isinstance(node.value, str) else ""
     if isinstance(node, ast.JoinedStr):
-        return "".join(_constant(it, known) for it in node.values)
+        return "".join(_text_of(it, known) for it in node.values)
     if isinstance(node, ast.FormattedValue):
-        return _constant(node.value, known)
+        return _text_of(node.value, known)
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-        return _constant(node.left, known) + _constant(node.right, known)
+        return _text_of(node.left, known) + _text_of(node.right, known)
     return known.get(node.id, "") if isinstance(node, ast.Name) else ""
 
 
-def _by_call(folder: str, call: CmakeCall, program: str) -> Start | None:
+def _start_by_call(folder: str, call: CmakeCall, program: str) -> Start | None:
     """Return where this program starts by a call; None if the call is about something else."""
     if call.name.endswith("add_executable") and call.words[:1] == (program,):
-        files = [*_existing(call.folder, call.words[1:])]
+        files = [*_existing_sources(call.folder, call.words[1:])]
         files.sort(key=lambda it: _MAIN.search(start_of_file(it)) is None)
-        return _begin(tuple(files), "main") if files else None
+        return _start_in(tuple(files), "main") if files else None
     if call.name == "rclcpp_components_register_node" and call.after("EXECUTABLE") == program:
-        return _component(folder, call.after("PLUGIN"))
+        return _component_start(folder, call.after("PLUGIN"))
     if call.name == "install" and call.words[:1] == ("PROGRAMS",):
-        for it in _existing(call.folder, call.words[1:], any_end=True):
+        for it in _existing_sources(call.folder, call.words[1:], any_end=True):
             if program == (call.after("RENAME") or os.path.basename(it)):
-                return _begin((it,))
+                return _start_in((it,))
     return None
 
 
-def _existing(folder: str, words: tuple[str, ...], any_end: bool = False) -> Iterator[str]:
+def _existing_sources(folder: str, words: tuple[str, ...], any_end: bool = False) -> Iterator[str]:
     for it in words:
         path = os.path.join(folder, it)
         if (any_end or it.endswith(tuple(READERS))) and os.path.isfile(path):
             yield path
 
 
-def _component(folder: str, class_: str) -> Start | None:
+def _component_start(folder: str, class_: str) -> Start | None:
     """Return the class of a component, and the file that registers it."""
     last = class_.rpartition("::")[2]
     for path in sources_in(folder):
         names = () if path.endswith(".py") else COMPONENT.findall(start_of_file(path))
         if class_ in names or any(it.rpartition("::")[2] == last for it in names):
-            return _begin((path,), class_=last)
+            return _start_in((path,), class_=last)
     return None
 
 
 @lru_cache(maxsize=64)
 def _scripts(folder: str) -> tuple[str, ...]:
+    """Return the Python files and scripts of a package that can be started."""
     found: list[str] = []
     for above, folders, names in os.walk(folder):
         folders[:] = sorted(it for it in folders if it[0] != "." and it not in NOT_RUN)

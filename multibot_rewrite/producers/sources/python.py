@@ -70,7 +70,7 @@ def read_python(text: str, place: Place) -> Source:
         return Source(faults=((place._replace(line=line), "does not parse"),))
     names = dict(_imported(tree))
     try:
-        parts = [_read(node, names, place) for node in tree.body]
+        parts = [_read_statement(node, names, place) for node in tree.body]
     except RecursionError:
         return Source(faults=((place, "is nested too deeply"),))
     aliases = tuple(Alias("", name, full.replace(".", "::")) for name, full in names.items())
@@ -100,7 +100,7 @@ def _modules(tree: ast.AST) -> Iterator[str]:
             yield from (f"{above}{joint}{it.name}" for it in node.names)
 
 
-def _read(node: ast.stmt, types: dict[str, str], place: Place) -> Source:
+def _read_statement(node: ast.stmt, types: dict[str, str], place: Place) -> Source:
     owner = node.name if isinstance(node, ast.ClassDef) else ""
     classes = (
         (Class(owner, tuple(map(_text, node.bases)), (), {}, place._replace(line=node.lineno)),)
@@ -111,23 +111,23 @@ def _read(node: ast.stmt, types: dict[str, str], place: Place) -> Source:
     calls: list[Call] = []
     values: list[Value] = []
     free = node.name if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) else ""
-    for part in _walk(_Part(node, free)):
+    for part in _parts_below(_Part(node, free)):
         found, function = part.node, part.function
         if isinstance(found, (ast.FunctionDef, ast.AsyncFunctionDef)):
-            takers.append(_taker(found, owner, function, place))
+            takers.append(_read_function(found, owner, function, place))
         elif isinstance(found, ast.Call):
             calls.append(_call(found, owner, part, types, place))
-            values += _parameters(found, owner, function, place)
+            values += _parameter_values(found, owner, function, place)
         else:
             at = place._replace(line=getattr(found, "lineno", 0))
             values += (
                 Value(owner, function, name if function or not owner else f"self.{name}", text, at)
-                for name, text in _bound(found)
+                for name, text in _assigned_values(found)
             )
     return Source(classes, tuple(calls), tuple(values), (), tuple(takers))
 
 
-def _taker(node: Any, owner: str, function: str, place: Place) -> Constructor:
+def _read_function(node: Any, owner: str, function: str, place: Place) -> Constructor:
     plain = any(_text(it) == "<staticmethod>" for it in node.decorator_list)
     every = [*node.args.posonlyargs, *node.args.args]
     names = every[1:] if owner and "." not in function and not plain else every
@@ -139,7 +139,7 @@ def _taker(node: Any, owner: str, function: str, place: Place) -> Constructor:
     return Constructor(owner, own, words, tuple(given), place.path)
 
 
-def _bound(node: ast.AST) -> Iterator[tuple[str, str]]:
+def _assigned_values(node: ast.AST) -> Iterator[tuple[str, str]]:
     """Yield names that a piece of code gives a value, and the value."""
     if isinstance(node, ast.Assign):
         for it in node.targets:
@@ -147,7 +147,7 @@ def _bound(node: ast.AST) -> Iterator[tuple[str, str]]:
     elif isinstance(node, (ast.AnnAssign, ast.NamedExpr)):
         yield from _pairs(node.target, node.value) if node.value else ()
     elif isinstance(node, (ast.For, ast.comprehension)):
-        yield from _of_loop(node)
+        yield from _loop_variables(node)
     elif isinstance(node, (ast.AugAssign, ast.AsyncFor)):
         yield from _pairs(node.target, None)
     elif isinstance(node, ast.withitem) and node.optional_vars:
@@ -156,9 +156,9 @@ def _bound(node: ast.AST) -> Iterator[tuple[str, str]]:
         yield node.name, ANY
 
 
-def _of_loop(node: ast.For | ast.comprehension) -> Iterator[tuple[str, str]]:
+def _loop_variables(node: ast.For | ast.comprehension) -> Iterator[tuple[str, str]]:
     """Yield the variable of a loop over a list; behind a number if it is enumerated."""
-    target, over = node.target, _over(node.iter)
+    target, over = node.target, _iterated(node.iter)
     pair = isinstance(target, ast.Tuple) and len(target.elts) == 2
     if isinstance(target, ast.Tuple) and pair and _text(node.iter) == ENUMERATED:
         yield from _pairs(target.elts[0], None)
@@ -169,15 +169,16 @@ def _of_loop(node: ast.For | ast.comprehension) -> Iterator[tuple[str, str]]:
         yield from _pairs(target, None)
 
 
-def _over(node: ast.expr) -> str:
+def _iterated(node: ast.expr) -> str:
     """Return ``<each list:a|b>``, or ``<each SIDES>``, for what a loop iterates over."""
     if _text(node) == ENUMERATED and isinstance(node, ast.Call) and node.args:
-        return _over(node.args[0])
+        return _iterated(node.args[0])
     text = _text(node)
     return f"<each {text[1:-1]}>" if text[:1] == "<" and text.count("<") == 1 else ANY
 
 
 def _pairs(target: ast.expr, value: ast.expr | None) -> Iterator[tuple[str, str]]:
+    """Yield the names that an assignment sets, with their values."""
     if isinstance(target, (ast.Tuple, ast.List)):
         same = isinstance(value, (ast.Tuple, ast.List)) and len(value.elts) == len(target.elts)
         each = value.elts if same else [None] * len(target.elts)  # type: ignore[union-attr]
@@ -187,7 +188,8 @@ def _pairs(target: ast.expr, value: ast.expr | None) -> Iterator[tuple[str, str]
         yield _text(target)[1:-1], _text(value) if value is not None else ANY
 
 
-def _walk(part: _Part) -> Iterator[_Part]:
+def _parts_below(part: _Part) -> Iterator[_Part]:
+    """Yield a part and all below it, each with its function and conditions."""
     yield part
     node = part.node
     if isinstance(node, ast.Lambda):
@@ -199,14 +201,15 @@ def _walk(part: _Part) -> Iterator[_Part]:
         below = part
         if isinstance(node, (ast.If, ast.IfExp)) and name != "test":
             below = _part_under(part, node.test, name == "orelse")
-        elif isinstance(node, ast.For) and name == "body" and not any(map(_may_leave, node.body)):
-            below = part._replace(asked=_both_conditions(part.asked, _over(node.iter)))
+        elif isinstance(node, ast.For) and name == "body" and not any(map(_may_return, node.body)):
+            below = part._replace(asked=_both_conditions(part.asked, _iterated(node.iter)))
         elif name in _SOMETIMES.get(type(node), ()):
             below = part._replace(asked=_both_conditions(part.asked, OTHERWISE))
-        yield from _each(value if isinstance(value, list) else [value], below)
+        yield from _parts_in_order(value if isinstance(value, list) else [value], below)
 
 
 def _part_under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
+    """Return a part under the condition of an ``if``, or of its ``else`` if ``wrong``."""
     text = ast.unparse(test)
     asked = _condition(test)
     if text.replace('"', "'") == "__name__ == '__main__'":
@@ -217,7 +220,7 @@ def _part_under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
     )
 
 
-def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
+def _parts_in_order(nodes: list[Any], part: _Part) -> Iterator[_Part]:
     """Yield what is in a list of statements; behind one that may return, it may not be reached."""
     for it in nodes:
         if not isinstance(it, ast.AST):
@@ -227,17 +230,17 @@ def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
             inside = f"{part.function}.{it.name}".strip(".")
         elif isinstance(it, ast.ClassDef):
             inside = f"{part.function}.{it.name}.".lstrip(".")
-        yield from _walk(part._replace(node=it, function=inside))
-        if isinstance(it, ast.If) and _may_leave(it):
+        yield from _parts_below(part._replace(node=it, function=inside))
+        if isinstance(it, ast.If) and _may_return(it):
             part = part._replace(asked=_both_conditions(part.asked, OTHERWISE))
 
 
-def _may_leave(node: ast.AST) -> bool:
+def _may_return(node: ast.AST) -> bool:
     """Return whether a function may end in this statement, without an error."""
     inner = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
     if isinstance(node, (ast.Return, ast.Continue, ast.Break)):
         return True
-    return any(_may_leave(it) for it in ast.iter_child_nodes(node) if not isinstance(it, inner))
+    return any(_may_return(it) for it in ast.iter_child_nodes(node) if not isinstance(it, inner))
 
 
 def _condition(node: ast.expr) -> str:
@@ -284,7 +287,7 @@ def _call(node: ast.Call, owner: str, part: _Part, types: dict[str, str], place:
     )
 
 
-def _parameters(node: ast.Call, owner: str, function: str, place: Place) -> Iterator[Value]:
+def _parameter_values(node: ast.Call, owner: str, function: str, place: Place) -> Iterator[Value]:
     """Yield values of ``declare_parameter('p', default)`` and of lists in ``declare_parameters``."""
     name, at = _called_name(node), place._replace(line=node.lineno)
     named = {it.arg: it.value for it in node.keywords}
@@ -310,13 +313,13 @@ def _text(node: ast.AST) -> str:
     return TEXTS.get(type(node), lambda _: ANY)(node)
 
 
-def _constant(node: ast.Constant) -> str:
+def _text_of_constant(node: ast.Constant) -> str:
     if isinstance(node.value, str):
         return ANY if {"<", ">"} & {*node.value} else node.value
     return f"<{node.value!r}>"
 
 
-def _attribute(node: ast.Attribute) -> str:
+def _text_of_attribute(node: ast.Attribute) -> str:
     text = _text(node.value)
     if node.attr in ("value", "string_value", "bool_value") and text != "<this>":
         return text
@@ -325,14 +328,14 @@ def _attribute(node: ast.Attribute) -> str:
     return f"<{inner}.{node.attr}>" if is_name else f"<?.{node.attr}>"
 
 
-def _sum(node: ast.BinOp) -> str:
+def _text_of_sum(node: ast.BinOp) -> str:
     if isinstance(node.op, ast.Mod):
         words = node.right.elts if isinstance(node.right, ast.Tuple) else [node.right]
-        return _put_in(_text(node.left), words)
+        return _text_with(_text(node.left), words)
     return _text(node.left) + _text(node.right) if isinstance(node.op, ast.Add) else ANY
 
 
-def _put_in(text: str, words: list[ast.expr]) -> str:
+def _text_with(text: str, words: list[ast.expr]) -> str:
     """Return a text with these words in its places; each place has one."""
     parts = _PLACE.split(text)
     if len(parts) != len(words) + 1 or "%" in "".join(parts):
@@ -342,31 +345,32 @@ def _put_in(text: str, words: list[ast.expr]) -> str:
     )
 
 
-def _called_type(node: ast.Call) -> str:
+def _text_of_call(node: ast.Call) -> str:
     name = _called_name(node)
     if name in ("get_parameter", "declare_parameter", "get_parameter_or"):
         named = (it.value for it in node.keywords if it.arg == "name")
         key = node.args[0] if node.args else next(named, None)
         return f"<@{braced(_text(key))}>" if key is not None else ANY
     if isinstance(node.func, ast.Attribute):
-        return _method(name, node)
+        return _text_of_method(name, node)
     made = _text(node.func).strip("<>")
     if made == "range":
-        return _range(node)
+        return _text_of_range(node)
     return _text(node.args[0]) if made == "str" and node.args else f"<new {made}>"
 
 
-def _method(name: str, node: ast.Call) -> str:
+def _text_of_method(name: str, node: ast.Call) -> str:
+    """Return the value of a method call: a node, a filled text or an object."""
     on = _text(node.func.value) if isinstance(node.func, ast.Attribute) else ANY
     if name == "create_node" and node.args:
         return f"<Node:{braced(_text(node.args[0]))}>"
     if name == "format" and not node.keywords:
-        return _put_in(on, node.args)
+        return _text_with(on, node.args)
     made = f"<new {name}>" if name[:1].isupper() else ANY
     return on if name in _SAME else made
 
 
-def _range(node: ast.Call) -> str:
+def _text_of_range(node: ast.Call) -> str:
     """Return a range of a few numbers as their list."""
     ends = [it.value for it in node.args if isinstance(it, ast.Constant)]
     whole = [it for it in ends if isinstance(it, int)]
@@ -376,7 +380,7 @@ def _range(node: ast.Call) -> str:
     return f"<list:{'|'.join(map(str, numbers))}>" if 0 < len(numbers) <= MOST_ROUNDS else ANY
 
 
-def _list(node: ast.List | ast.Tuple) -> str:
+def _text_of_list(node: ast.List | ast.Tuple) -> str:
     """Return a list of texts or numbers."""
     words = [str(it.value) for it in node.elts if isinstance(it, ast.Constant)]
     plain = 0 < len(words) == len(node.elts) <= MOST_ROUNDS and not {*"<>|{}"} & {*"".join(words)}
@@ -384,13 +388,13 @@ def _list(node: ast.List | ast.Tuple) -> str:
 
 
 TEXTS: dict[type, Callable[[Any], str]] = {
-    ast.Constant: _constant,
-    ast.BinOp: _sum,
+    ast.Constant: _text_of_constant,
+    ast.BinOp: _text_of_sum,
     ast.JoinedStr: lambda node: "".join(map(_text, node.values)),
     ast.FormattedValue: lambda node: ANY if node.format_spec else _text(node.value),
-    ast.Attribute: _attribute,
+    ast.Attribute: _text_of_attribute,
     ast.Name: lambda node: "<this>" if node.id == "self" else f"<{node.id}>",
-    ast.Call: _called_type,
-    ast.List: _list,
-    ast.Tuple: _list,
+    ast.Call: _text_of_call,
+    ast.List: _text_of_list,
+    ast.Tuple: _text_of_list,
 }

@@ -39,8 +39,7 @@ NO_WORDS: Mapping[str, str] = {}
 
 
 class Names(NamedTuple):
-    """What was read of a program, by what it is asked for. ``setting`` are values by owner, function
-    and variable, ``members`` by owner and variable, ``constants`` by variable."""
+    """What was read of a program, by the names that it is looked up by."""
 
     classes: Mapping[str, tuple[Class, ...]]
     calls: Mapping[tuple[str, str], tuple[Call, ...]]
@@ -53,8 +52,7 @@ class Names(NamedTuple):
 
 
 class Made(NamedTuple):
-    """An object: its class and the bases that are here, what each of their constructors is given, what
-    stands for the types of templates, and the bases that are not here."""
+    """An object: class, known bases, arguments of their constructors, template types, other bases."""
 
     chain: tuple[Class, ...]
     given: Mapping[str, Mapping[str, str]]
@@ -71,8 +69,7 @@ NOBODY = Made((), {}, {})
 
 
 class Spot(NamedTuple):
-    """A function that runs: of which object, of which of its classes, with which arguments, when
-    (``asked``, see ``Call``), in which file, and called by which."""
+    """A function that runs: its object and class, arguments, conditions, file and callers."""
 
     made: Made
     owner: str
@@ -84,26 +81,26 @@ class Spot(NamedTuple):
 
 
 def names_of(source: Source) -> Names:
-    """Return what was read, by name."""
+    """Return the look-ups for what was read of a program."""
     outside = (it for it in source.values if not it.function and not it.variable.startswith("@"))
     return Names(
-        _by(source.classes, lambda it: it.name),
-        _by(source.calls, lambda it: (it.owner, it.function)),
-        _by(source.constructors, lambda it: (it.owner, it.function)),
-        _by(source.values, lambda it: (it.owner, it.function, it.variable)),
-        _by(source.values, lambda it: (it.owner, it.variable)),
-        _by(outside, lambda it: it.variable.removeprefix("self.")),
-        _by(source.aliases, lambda it: it.name),
-        _by((it for it in source.values if frame_in(it)), lambda it: (it.owner, it.function)),
+        _grouped(source.classes, lambda it: it.name),
+        _grouped(source.calls, lambda it: (it.owner, it.function)),
+        _grouped(source.constructors, lambda it: (it.owner, it.function)),
+        _grouped(source.values, lambda it: (it.owner, it.function, it.variable)),
+        _grouped(source.values, lambda it: (it.owner, it.variable)),
+        _grouped(outside, lambda it: it.variable.removeprefix("self.")),
+        _grouped(source.aliases, lambda it: it.name),
+        _grouped((it for it in source.values if frame_in(it)), lambda it: (it.owner, it.function)),
     )
 
 
 def frame_in(it: Value) -> str:
-    """Return the end of a variable that is a frame of a message; empty for another one."""
+    """Return the last part of a variable that is a frame of a message; empty for another one."""
     return next((end for end in FRAMES if it.variable.endswith(end)), "")
 
 
-def _by(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, tuple[Item, ...]]:
+def _grouped(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, tuple[Item, ...]]:
     found = lists_by_key((key(item), item) for item in items)
     return {name: tuple(rows) for name, rows in found.items()}
 
@@ -112,10 +109,11 @@ def text_in(names: Names, spot: Spot, text: str, without: str = "", depth: int =
     """Return a text with the values of its names; ``without`` is a parameter that is not looked up."""
     if depth > DEEPEST:
         return ANY
-    return _PART.sub(lambda it: _value(names, spot, it[1], without, depth + 1), text)
+    return _PART.sub(lambda it: _text_of_name(names, spot, it[1], without, depth + 1), text)
 
 
-def _value(names: Names, spot: Spot, name: str, without: str, depth: int) -> str:
+def _text_of_name(names: Names, spot: Spot, name: str, without: str, depth: int) -> str:
+    """Return the text that a name stands for at a spot; the name in <> if that is unknown."""
     if name.isdigit():
         return name
     if name.startswith("@"):
@@ -161,7 +159,7 @@ def _candidates(names: Names, spot: Spot, name: str, depth: int) -> Iterator[tup
         return
     for owner in spot.made.owners:
         rows = names.members.get((owner, name), ()) if _is_member(spot.made, name) else ()
-        yield from ((_where(spot, it), it.text) for it in rows)
+        yield from ((_spot_of(spot, it), it.text) for it in rows)
         if rows:
             return
     # What is set outside of functions, in the same file or once in all.
@@ -194,7 +192,7 @@ def _is_member(made: Made, name: str) -> bool:
     return head == "self" or any(head in it.members for it in made.chain)
 
 
-def _where(spot: Spot, row: Value) -> Spot:
+def _spot_of(spot: Spot, row: Value) -> Spot:
     """Return the function that sets a member; for a constructor with its known arguments."""
     makes = row.function in ("__init__", row.owner)
     given = spot.made.given.get(row.owner, NO_WORDS) if makes else NO_WORDS
@@ -206,7 +204,7 @@ def default_of(names: Names, spot: Spot, parameter: str) -> str | None:
     wanted = f"@{parameter}"
     for owner in (*spot.made.owners, ""):
         rows = names.members.get((owner, wanted), ())
-        found = {text_in(names, _where(spot, it), it.text, parameter) for it in rows}
+        found = {text_in(names, _spot_of(spot, it), it.text, parameter) for it in rows}
         if found:
             only = found.pop()
             number = only[1:-1].replace(".", "", 1).lstrip("-")
@@ -226,18 +224,19 @@ def type_in(names: Names, spot: Spot, type_: str) -> str:
             return "/".join(ros.groups())
         head, point, rest = type_.partition(".")
         if point:
-            type_ = f"{_alias(names, spot, head)}::{rest}"
+            type_ = f"{_type_of_alias(names, spot, head)}::{rest}"
             continue
         name = last(type_.removeprefix("typename "))
         known = spot.made.types.get(name, "")
-        near = known if known and known != type_ else _alias(names, spot, name)
+        near = known if known and known != type_ else _type_of_alias(names, spot, name)
         if not near or near == type_:
             return ""
         type_ = near
     return ""
 
 
-def _alias(names: Names, spot: Spot, name: str) -> str:
+def _type_of_alias(names: Names, spot: Spot, name: str) -> str:
+    """Return the one type that an alias stands for; otherwise empty."""
     rows = names.aliases.get(name, ())
     own = {it.type for it in rows if it.owner in spot.made.owners}
     found = own or {it.type for it in rows}

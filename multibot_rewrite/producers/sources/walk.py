@@ -56,8 +56,7 @@ IMAGE = "sensor_msgs/msg/Image"
 
 
 class Declared(NamedTuple):
-    """An endpoint as a program declares it; ``name`` may have <> in it. ``on`` is the node that another
-    program's part makes for it."""
+    """An endpoint as a program declares it, maybe with <> in ``name``; ``on`` another part's node."""
 
     api: Api
     name: str
@@ -116,8 +115,7 @@ Event = Declared | Parameter | Looked | Sent | Named | Unread
 
 
 class _Walk(NamedTuple):
-    """What is known on the way: the texts, functions that have run, objects by class, and those that
-    were called on an object."""
+    """A walk's state: texts, functions that ran, objects by class, methods called on objects."""
 
     names: Names
     seen: set[object]
@@ -150,6 +148,7 @@ def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
 
 
 def _uncalled_parts(walk: _Walk, made: Made) -> Iterator[Event]:
+    """Yield what methods of an object may do that nothing calls by name: callbacks."""
     # Has it the states of a life cycle?
     cycled = any(last(it) == "LifecycleNode" for it in made.beyond)
     for it in made.chain:
@@ -173,7 +172,7 @@ def _function(walk: _Walk, spot: Spot) -> Iterator[Event]:
     at = spot.owner, spot.function
     for call in walk.names.calls.get(at, ()):
         if spot.owner or call.place.path == spot.path:
-            yield from _call(walk, spot, call)
+            yield from _events_of_call(walk, spot, call)
     # Frames that are written into messages.
     for it in walk.names.frames.get(at, ()):
         if spot.owner or it.place.path == spot.path:
@@ -191,7 +190,8 @@ def _conditions_of(names: Names, spot: Spot, call: Call) -> str:
     return "&".join(dict.fromkeys((*filter(None, spot.asked.split("&")), *own)))
 
 
-def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
+def _events_of_call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
+    """Yield what a call declares, sends, looks up or makes, or what it runs."""
     names, asked = walk.names, _conditions_of(walk.names, spot, call)
     here = spot._replace(asked=asked)
     name, types = _behind_aliases(names, spot, call)
@@ -200,9 +200,9 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
         yield from (own or _parameters)(names, here, call)
         return
     on = text_in(names, spot, call.on) if call.on else ""
-    if _is_base(spot, call, name) or name in NODES or name == "create_node":
-        yield from _base(walk, here, call, name)
-    elif (found := _class(names, name, call.place)) and (
+    if _is_base_call(spot, call, name) or name in NODES or name == "create_node":
+        yield from _events_of_base(walk, here, call, name)
+    elif (found := _class_named(names, name, call.place)) and (
         # An object is made, and no method of that name called.
         not call.on or call.on.endswith(f"{name}>") or call.name != name or "." not in on
     ):
@@ -210,7 +210,7 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
     elif name in apis() and not (on.startswith("<new ") and (on[5:-1], name) in names.takers):
         walk.seen.add(call.place)
         yield from _declared_ends(names, here, call, name, types)
-    elif followed := _followed(walk, here, call, name, on):
+    elif followed := _called_functions(walk, here, call, name, on):
         for it in followed:
             yield from _function(walk, it)
     elif name not in harmless():
@@ -226,7 +226,7 @@ def _is_new_node(names: Names, text: str) -> bool:
     if text.startswith("<Node:") or text in ("<new Node>", "<new LifecycleNode>"):
         return True
     rows = names.classes.get(text[5:-1], ()) if text.startswith("<new ") else ()
-    return any(last(it) in NODES for one in rows for it in _chain(names, one)[1])
+    return any(last(it) in NODES for one in rows for it in _known_bases(names, one)[1])
 
 
 def _lookups(names: Names, spot: Spot, call: Call) -> Iterator[Looked]:
@@ -263,7 +263,7 @@ def _inner(type_: str) -> tuple[str, tuple[str, ...]]:
     return last(type_), inner
 
 
-def _class(names: Names, name: str, place: Place) -> Class | None:
+def _class_named(names: Names, name: str, place: Place) -> Class | None:
     """Return the class of this name: of the same file, or the only one."""
     rows = names.classes.get(name, ())
     own = [it for it in rows if it.place.path == place.path]
@@ -282,7 +282,7 @@ def _object(
     names = walk.names
     words = tuple(text_in(names, spot, it) for it in given)
     kept = tuple((key, text_in(names, spot, it)) for key, it in named)
-    chain, beyond = _chain(names, found)
+    chain, beyond = _known_bases(names, found)
     heads = [it.partition("=")[0] for it in found.parameters]
     meant = [type_in(names, spot, it) or it for it in types]
     own = _taken(names, found.name, found.name, words, kept)
@@ -292,10 +292,10 @@ def _object(
         return
     walk.seen.add(key)
     walk.objects.setdefault(found.name, []).append(made)
-    yield from _construction(walk, made, found, own, spot)
+    yield from _events_of_construction(walk, made, found, own, spot)
 
 
-def _construction(
+def _events_of_construction(
     walk: _Walk, made: Made, found: Class, own: Mapping[str, str], spot: Spot
 ) -> Iterator[Event]:
     for function in ("__init__", found.name, ""):
@@ -304,22 +304,22 @@ def _construction(
         yield from _function(walk, start)
     for type_ in found.members.values():
         name, types = _inner(type_)
-        inside = _class(walk.names, name, found.place)
+        inside = _class_named(walk.names, name, found.place)
         if inside and name == last(type_) and name not in walk.objects and name not in made.owners:
             yield from _object(walk, inside, (), types, spot._replace(made=made))
     # A constructor that calls none of its base has the one without arguments.
     for it in made.chain[1:]:
         if it.name not in made.given:
             made.given[it.name] = _taken(walk.names, it.name, it.name, (), ())  # type: ignore[index]
-            yield from _construction(walk, made, it, made.given[it.name], spot)
+            yield from _events_of_construction(walk, made, it, made.given[it.name], spot)
 
 
-def _chain(names: Names, found: Class) -> tuple[tuple[Class, ...], tuple[str, ...]]:
+def _known_bases(names: Names, found: Class) -> tuple[tuple[Class, ...], tuple[str, ...]]:
     """Return the class with its known base classes, and the names of its unknown ones."""
     chain, beyond, waiting = [found], [], [*found.bases]
     while waiting and len(chain) < DEEPEST:
         base = waiting.pop(0).strip("<>")
-        above = _class(names, last(base.rpartition(".")[2]), found.place)
+        above = _class_named(names, last(base.rpartition(".")[2]), found.place)
         if above is None:
             beyond.append(base.rpartition(".")[2])
         elif above not in chain:
@@ -345,7 +345,7 @@ def _taken(
     return {**dict(best.defaults), **given}
 
 
-def _is_base(spot: Spot, call: Call, name: str) -> bool:
+def _is_base_call(spot: Spot, call: Call, name: str) -> bool:
     """Return whether it is the constructor of a base that its class calls."""
     if name == "__init__":
         return True
@@ -354,18 +354,18 @@ def _is_base(spot: Spot, call: Call, name: str) -> bool:
     return inside and any(name in map(last, it.bases) for it in own)
 
 
-def _base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
+def _events_of_base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
     """Yield what the constructor of a base does, or a node that is made."""
     names, made = walk.names, spot.made
     words = tuple(text_in(names, spot, it) for it in call.given)
     if name == "__init__" and call.on != "<new super>" and words[:1] == ("<this>",):
         words = words[1:]
     named = tuple((key, text_in(names, spot, it)) for key, it in call.named)
-    above = _above(spot, call, name)
+    above = _called_base(spot, call, name)
     if above:
         own = _taken(names, above.name, above.name, words, named)
         made.given[above.name] = own  # type: ignore[index]
-        yield from _construction(walk, made, above, own, spot)
+        yield from _events_of_construction(walk, made, above, own, spot)
         return
     base, beyond = name, made.beyond
     if name not in (*NODES, "create_node"):
@@ -384,7 +384,7 @@ def _base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
     yield Named(called, space, spot.asked, call.place)
 
 
-def _above(spot: Spot, call: Call, name: str) -> Class | None:
+def _called_base(spot: Spot, call: Call, name: str) -> Class | None:
     """Return the base whose constructor is called, if its source is here."""
     chain, owners = spot.made.chain, spot.made.owners
     if name != "__init__":
@@ -406,6 +406,7 @@ def _parameters(names: Names, spot: Spot, call: Call) -> Iterator[Parameter]:
 def _declared_ends(
     names: Names, spot: Spot, call: Call, name: str, types: tuple[str, ...]
 ) -> Iterator[Declared]:
+    """Yield the endpoints that a call declares, by each API of its name."""
     given = [(it, text_in(names, spot, it)) for it in (*call.given, *(it for _, it in call.named))]
     nodes = [text for raw, text in given if is_node(raw) or is_node(text)]
     others = [text for raw, text in given if not (is_node(raw) or is_node(text))]
@@ -420,24 +421,24 @@ def _declared_ends(
             api = api._replace(function="advertise", type=IMAGE)  # noqa: PLW2901
         text = api.name.replace(ARGUMENT, others[0] if others else "")
         helper = api.node == HELPER and not nodes
-        type_ = _type(names, spot, api, types)
+        type_ = _type_of(names, spot, api, types)
         # A member may be told later what to subscribe to.
         members = (_inner(it.members.get(call.on.strip("<>"), "")) for it in spot.made.chain)
         rows = ((one, own) for member, own in members for one in apis().get(member, ())[:1])
         for one, own_types in () if type_ else rows:
-            type_ = _type(names, spot, one, own_types)
+            type_ = _type_of(names, spot, one, own_types)
             break
         yield Declared(api, text, type_, helper, spot.asked, call.place, spot)
 
 
-def _type(names: Names, spot: Spot, api: Api, types: tuple[str, ...]) -> str:
+def _type_of(names: Names, spot: Spot, api: Api, types: tuple[str, ...]) -> str:
     if not api.type.isdigit():
         return api.type
     at = int(api.type)
     return type_in(names, spot, types[at]) if at < len(types) else ""
 
 
-def _followed(walk: _Walk, spot: Spot, call: Call, name: str, on: str) -> list[Spot]:
+def _called_functions(walk: _Walk, spot: Spot, call: Call, name: str, on: str) -> list[Spot]:
     """Return the functions that a call runs, if their text is here."""
     names = walk.names
     words = tuple(text_in(names, spot, it) for it in call.given)
@@ -473,5 +474,6 @@ def _followed(walk: _Walk, spot: Spot, call: Call, name: str, on: str) -> list[S
 
 
 def _path(names: Names, owner: str, function: str, path: str) -> str:
+    """Return the file of a function's calls; ``path`` if it makes none."""
     rows = names.calls.get((owner, function), ())
     return rows[0].place.path if rows else path

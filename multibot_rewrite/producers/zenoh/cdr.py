@@ -97,6 +97,7 @@ def read_joint_names(data: bytes) -> tuple[str, ...]:
 
 
 def _read(data: bytes, read: "Callable[[_Reader], _T]", without: _T) -> _T:
+    """Return what ``read`` finds in CDR data, or ``without``."""
     mark = _ENDS.get(data[:2])
     if mark is None:
         return without

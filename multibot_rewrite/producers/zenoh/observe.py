@@ -15,10 +15,10 @@ from multibot_rewrite.base.wording import FEW, SEVERAL, plural, shorten
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, frames
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
-from multibot_rewrite.producers.zenoh import tokens
+from multibot_rewrite.producers.zenoh import SPACE, tokens
 from multibot_rewrite.producers.zenoh.cdr import read_tf
 from multibot_rewrite.producers.zenoh.session import NoRouter, RouterSession, opened
-from multibot_rewrite.producers.zenoh.tokens import SPACE, Token, read_token
+from multibot_rewrite.producers.zenoh.tokens import Token, read_token
 from multibot_rewrite.system.records import (
     CHANGING,
     EXPECTED,
@@ -51,12 +51,12 @@ class Router(NamedTuple):
 
 def look(request: Request, router: Router) -> System:
     """Return a snapshot of what the router knows now, or once all of ``request.expected`` exists.
-    Raises Unusable without zenoh, InputError for a bad configuration. If no router answers, the
-    snapshot is empty and says so."""
+
+    Raises Unusable without zenoh, InputError for a bad configuration; empty if no router answers."""
     started = time.monotonic()
     try:
         with opened(router.address, request.timeout) as session:
-            return _look(session, request, router, started)
+            return _look_in(session, request, router, started)
     except NoRouter as error:
         return _snapshot(router, _Seen(), time.monotonic() - started, [_no_router(router, error)])
 
@@ -77,7 +77,7 @@ def _views(request: Request, router: Router) -> Generator[System | None, None, N
     started = time.monotonic()
     try:
         with opened(router.address, request.timeout) as session:
-            yield from _watch(session, request, router, started)
+            yield from _views_in(session, request, router, started)
     except NoRouter as error:
         yield _snapshot(router, _Seen(), time.monotonic() - started, [_no_router(router, error)])
 
@@ -91,15 +91,15 @@ class _Seen(NamedTuple):
     settled: str = QUIET
 
 
-def _look(session: RouterSession, request: Request, router: Router, started: float) -> System:
+def _look_in(session: RouterSession, request: Request, router: Router, started: float) -> System:
     keys, complete = session.tokens(router.key())
-    while not _all_there(keys, request.expected) and time.monotonic() - started < request.timeout:
+    while not _has_all(keys, request.expected) and time.monotonic() - started < request.timeout:
         time.sleep(POLL_SECONDS)
         keys, complete = session.tokens(router.key())
-    seen = _read(keys)
+    seen = _read_tokens(keys)
     tf = ZenohTf(session, router.domain)
     tf.listen(tokens.endpoints(seen.tokens), request.timeout - (time.monotonic() - started))
-    settled = EXPECTED if _all_there(keys, request.expected) else TIMEOUT
+    settled = EXPECTED if _has_all(keys, request.expected) else TIMEOUT
     text = f"the router at {router.address} did not answer in full; look again"
     cut = Caveat("not-settled", True, text)
     caveats = [*(_strays(session, seen.tokens, router) if complete else [cut]), *tf.caveats()]
@@ -111,7 +111,7 @@ def _look(session: RouterSession, request: Request, router: Router, started: flo
     return _snapshot(router, seen, time.monotonic() - started, caveats)
 
 
-def _read(keys: Iterable[str]) -> _Seen:
+def _read_tokens(keys: Iterable[str]) -> _Seen:
     read = {key: read_token(key) for key in sorted(set(keys))}
     found = tuple(token for token in read.values() if token)
     return _Seen(found, tuple(key for key, token in read.items() if token is None))
@@ -122,8 +122,8 @@ def _names(found: Iterable[Token]) -> set[str]:
     return {name for it in found for name in (it.node, it.end.name if it.end else it.node)}
 
 
-def _all_there(keys: Iterable[str], expected: Iterable[str]) -> bool:
-    return _names(_read(keys).tokens).issuperset(expected)
+def _has_all(keys: Iterable[str], expected: Iterable[str]) -> bool:
+    return _names(_read_tokens(keys).tokens).issuperset(expected)
 
 
 def _strays(session: RouterSession, found: Iterable[Token], router: Router) -> Iterator[Caveat]:
@@ -131,7 +131,7 @@ def _strays(session: RouterSession, found: Iterable[Token], router: Router) -> I
     if any(found):
         return
     keys, _ = session.tokens(f"{SPACE}/**")
-    domains = Counter(token.domain for token in _read(keys).tokens)
+    domains = Counter(token.domain for token in _read_tokens(keys).tokens)
     where = ", ".join(map(str, sorted(domains)))
     remedy = "do the robots use RMW_IMPLEMENTATION=rmw_zenoh_cpp and connect to this router?"
     if domains:
@@ -147,7 +147,7 @@ def _no_router(router: Router, error: NoRouter) -> Caveat:
     return Caveat("no-router", True, text)
 
 
-def _watch(
+def _views_in(
     session: RouterSession, request: Request, router: Router, started: float
 ) -> Iterator[System | None]:
     there: set[str] = set()
@@ -171,7 +171,7 @@ def _watch(
         quiet = now - changed >= SETTLE_SECONDS
         if (quiet or now - sent >= LONGEST_SETTLE_SECONDS) and shown != (state, quiet):
             shown, sent = (state, quiet), now
-            seen = _read(there)
+            seen = _read_tokens(there)
             tf.update(tokens.endpoints(seen.tokens))
             seen = seen._replace(tf=tf.subscriptions, settled=QUIET if quiet else CHANGING)
             caveats = list(tf.caveats()) if connected else [lost]
@@ -241,6 +241,7 @@ class ZenohTf:
             self._session.deliver()
 
     def _waiting(self, passed: float, seconds: float) -> bool:
+        """Return whether a publisher of tf may still be heard."""
         silent = any(len(self._spoken[it]) < many for it, many in self._publishers.items())
         return passed < min(seconds, TF_LONGEST_SECONDS if silent else TF_SECONDS)
 

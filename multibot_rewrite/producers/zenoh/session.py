@@ -35,7 +35,7 @@ class RouterSession(NamedTuple):
     declared: list[Any]
 
     def deliver(self) -> None:
-        """Call what has arrived, on this thread."""
+        """Call the receivers of what has arrived, on this thread."""
         while self.inbox:
             call, values = self.inbox.popleft()
             call(*values)
@@ -67,8 +67,7 @@ class RouterSession(NamedTuple):
     def subscribe(
         self, key: str, latched: bool, received: Callable[[bytes, bytes], None]
     ) -> Callable[[], None]:
-        """Subscribe to a key: ``received`` gets payload and attachment; with ``latched`` also
-        earlier messages. rmw_zenoh keeps latched samples in the cache of an advanced publisher."""
+        """Subscribe to a key, if ``latched`` with earlier messages; return what ends it."""
         from zenoh import ext
 
         def arrived(sample: Any) -> None:
@@ -83,6 +82,7 @@ class RouterSession(NamedTuple):
         )
 
     def _keep(self, subscription: Any) -> Callable[[], None]:
+        """Keep a subscription, and return what ends it."""
         self.declared.append(subscription)
 
         def end() -> None:

@@ -15,6 +15,7 @@ from math import inf
 from typing import NamedTuple
 
 from multibot_rewrite.producers.rosgraph.reading import DURABILITY, HISTORY, LIVELINESS, RELIABILITY
+from multibot_rewrite.producers.zenoh import SPACE
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -28,7 +29,6 @@ from multibot_rewrite.system.records import (
     Qos,
 )
 
-SPACE = "@ros2_lv"
 NODE = "NN"
 _ENDS = {
     "MP": (TOPIC, PUBLISHES),
@@ -76,13 +76,13 @@ def read_token(key: str) -> Token | None:
         node = f"{'' if space == '/' else space}/{_with_slashes(name)}"
         if not node.startswith("/"):
             raise _Malformed
-        end = None if kind == NODE else _end(kind, node, session, parts[_NODE_PARTS:])
+        end = None if kind == NODE else _end_of_token(kind, node, session, parts[_NODE_PARTS:])
         return Token(_number(domain), session, node_id, node, _with_slashes(enclave), end)
     except _Malformed:
         return None
 
 
-def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> End:
+def _end_of_token(kind: str, node: str, session: str, rest: Sequence[str]) -> End:
     if kind not in _ENDS or len(rest) < _END_PARTS - _NODE_PARTS:
         raise _Malformed
     name, type_, hash_ = (_with_slashes(part) for part in rest[:3])
@@ -98,8 +98,7 @@ def _with_slashes(part: str) -> str:
 
 
 def ros_type(name: str) -> str:
-    """Return ``std_msgs::msg::dds_::String_`` as ``std_msgs/msg/String``; any other name unchanged.
-    Source: rmw_zenoh ``graph_cache.cpp``, ``_demangle_if_ros_type``."""
+    """Return ``std_msgs::msg::dds_::String_`` as ``std_msgs/msg/String``, as graph_cache.cpp does."""
     package, found, own = name.partition("dds_::")
     if not found or not own.endswith("_"):
         return name
@@ -109,8 +108,9 @@ def ros_type(name: str) -> str:
 # A fleet has thousands of endpoints and a handful of profiles.
 @lru_cache(maxsize=256)
 def read_qos(text: str) -> Qos:
-    """Return the QoS that a token ends in. It is
-    ``reliability:durability:history,depth:deadline:lifespan:liveliness,lease``; the times are
+    """Return the QoS that a token ends in; raises for what rmw_zenoh would not take.
+
+    It is ``reliability:durability:history,depth:deadline:lifespan:liveliness,lease``; the times are
     ``seconds,nanoseconds``."""
     parts = [part.split(",") for part in text.split(":")]
     if [len(part) for part in parts[2:6]] != [2, 2, 2, 3]:
@@ -153,8 +153,7 @@ def _seconds(whole: str, rest: str) -> float:
 
 
 def nodes(tokens: Iterable[Token]) -> list[Node]:
-    """Return one record a node, by name; its process is its session. A node exists once one of its
-    endpoints does: rmw_zenoh ``graph_cache.cpp``, ``parse_put``."""
+    """Return a record for each node or owner of an endpoint (as graph_cache.cpp does), by name."""
     found = {(it.node, it.session, it.node_id, it.enclave.rstrip("/")) for it in tokens}
     return [Node(name, session, enclave) for name, session, _, enclave in sorted(found)]
 

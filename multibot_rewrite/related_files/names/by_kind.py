@@ -220,3 +220,10 @@ def is_shared_frame(context: Context, value: str) -> bool:
 def frames_differ(context: Context) -> bool:
     """Return whether the robots have different frame names."""
     return not FRAME_KINDS.isdisjoint(context.names.naming.separators)
+
+
+def is_emptied(context: Context, kind: str, text: str) -> bool:
+    """Return whether a rewrite takes out a prefix, since the node puts it before frames that have the
+    robot's name."""
+    bare = frames_differ(context) and not context.names.naming.layout.at_run_time
+    return bare and kind == "doubles_as_is" and is_plain(text)

@@ -70,7 +70,7 @@ class DefaultLine(NamedTuple):
 def default_lines(
     job: ParamsJob, pages: Sequence[tuple[ParamSection, SectionNames]], beside: Sequence[RawSection]
 ) -> Iterator[Splice | Finding]:
-    """Yield lines for the first section of each known node, without those that ``beside`` sets."""
+    """Yield lines for the first section of each known node, unless another file sets them."""
     # What is set for which nodes, if patterns or other files set more than the section itself.
     several = beside or any(it.wild for it, _ in pages)
     bodies = [(it.full, it.body) for it, _ in pages] if several else []
@@ -163,7 +163,7 @@ def not_inserted(
 def lacking_sections(
     job: ParamsJob, found: Sequence[RawSection], beside: Iterable[RawSection], is_first: bool
 ) -> Iterator[Splice | Finding]:
-    """Yield the sections to add that neither ``found`` nor ``beside`` have."""
+    """Yield the sections to add that neither this file nor the robot's others have."""
     # The first file gets those of the node set's nodes as well.
     every, lacking = [*found, *beside], []
     named = {it.path.rpartition("/")[2] for it in every}

@@ -13,7 +13,12 @@ from multibot_rewrite.knowledge.node_entries import GRAPH_NAME_KINDS, RUN_TIME, 
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
 from multibot_rewrite.related_files.context import NAMESPACE_SLOT, TAG_SLOT, Context
 from multibot_rewrite.related_files.engine import GRAPH, spell_site, splices_of, written
-from multibot_rewrite.related_files.names.by_kind import SPELLERS, is_component, is_plain
+from multibot_rewrite.related_files.names.by_kind import (
+    SPELLERS,
+    is_component,
+    is_emptied,
+    is_plain,
+)
 from multibot_rewrite.related_files.names.node_topics import Facts, TopicText
 from multibot_rewrite.related_files.names.placeholders import filled, is_robot
 from multibot_rewrite.related_files.names.rename_map import KINDS, is_declared
@@ -126,6 +131,8 @@ def _new_name(job: ParamsJob, site: Site, stays: bool) -> TopicText:
         # No prefix where frames have it already.
         run_time = job.context.names.naming.layout.at_run_time
         return TopicText(renamed(job.context, site) if run_time else "")
+    if is_emptied(job.context, site.kind, site.text) and not site.in_key:
+        return TopicText("")
     if site.bare and is_plain(site.text):
         site = site._replace(text=site.text.removeprefix("/"))
     if site.in_key or site.kind not in GRAPH:

@@ -9,7 +9,7 @@ from typing import TypeGuard
 import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
-from multibot_rewrite.planning.plan import tf_topic
+from multibot_rewrite.planning.planned_system import tf_topic
 from multibot_rewrite.related_files.rviz.display_groups import Robots, for_one_process, leaves
 from multibot_rewrite.related_files.rviz.read_config import (
     ABSOLUTE,

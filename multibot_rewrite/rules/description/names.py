@@ -24,7 +24,6 @@ from multibot_rewrite.related_files.named_file import EVERY
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import simulated
 from multibot_rewrite.rules.subject import Subject
-from multibot_rewrite.system.records import HARDWARE_NODE
 
 WORLD = "world"
 
@@ -226,6 +225,7 @@ def _hardware_without_node(subject: Subject) -> Iterator[Problem]:
         if fault is None or SUBSTITUTION in name or system in in_simulator:
             continue
         from multibot_rewrite.knowledge.node_sets import built_in  # hardly any name is wrong
+        from multibot_rewrite.system.records import HARDWARE_NODE
 
         if HARDWARE_NODE in built_in(subject.settings.distro).nodes:
             message = (

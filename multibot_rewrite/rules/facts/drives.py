@@ -89,7 +89,9 @@ class Wheel(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """A plugin, its wheels, the elements of its sizes (None: default), the ``robot`` with the links."""
+    """A plugin, its wheels, and the elements of its sizes, None where it takes its default.
+
+    ``robot`` has the links of the wheels: of an SDF those of the model that the plugin is in."""
 
     robot: Robot
     plugin: _Element
@@ -121,7 +123,7 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
     for plugin, section in subject.inventory.served:
         kinds = next((TAGS[it] for it in section.names if it in TAGS), ())
         names = {tag for it in kinds for tag in (*it.left, *it.right)}
-        model = _model_of(plugin) if names else None
+        model = _wheels_of_model(plugin) if names else None
         for element in plugin.iterchildren(*names) if names else ():
             name = text_of(element)
             of_model = model.wheels.get(name) if model else None
@@ -130,15 +132,14 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
                 yield element, joint
 
 
-def _model_of(plugin: _Element) -> ModelWheels | None:
-    """Return the wheels of the SDF model that a plugin is in; None in a URDF."""
+def _wheels_of_model(plugin: _Element) -> ModelWheels | None:
     above = plugin.getparent()
     return model_wheels(above) if above is not None and above.tag == "model" else None
 
 
 def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
     """Return the drive that a plugin is; None if it names no wheels on both sides."""
-    model = _model_of(plugin)
+    model = _wheels_of_model(plugin)
     for tags in kinds:
         left, right = (tuple(_wheels(subject, model, plugin, it)) for it in (tags.left, tags.right))
         if left and right:
@@ -191,7 +192,7 @@ class Measured(NamedTuple):
 
 
 def separation(robot: Robot, left: Wheel, right: Wheel, several: bool) -> Measured | None:
-    """Return how far two wheels are apart, None if not parallel; ``several``: a side skids."""
+    """Return how far two wheels are apart; None if not parallel. ``several`` of a side skid."""
     if abs(dot(left.axis, right.axis)) < ALONG:
         return None
     slack = TOLERANCE if radii(robot, left) else UNSEEN
@@ -215,7 +216,7 @@ def radius(robot: Robot, wheels: Iterable[Wheel]) -> Measured | None:
 
 
 def are_swapped(left: Wheel, right: Wheel) -> float:
-    """Return how far the left wheel is right of the right one; 0 if it is left, or unknown."""
+    """Return how far the left wheel is on the right, if both roll forward; 0 if left or unknown."""
     if dot(left.axis, right.axis) < ALONG or abs(left.axis[2]) > 1 - ALONG:
         return 0.0
     across = apart(left.pose.at, right.pose.at, left.axis)
@@ -228,7 +229,7 @@ def are_opposite(left: Wheel, right: Wheel) -> bool:
 
 
 def rolling_faults(robot: Robot, left: Wheel, right: Wheel) -> Iterator[str]:
-    """Yield why two wheels of one axle would not roll, such as an upright axis."""
+    """Yield why two wheels of one axle would not roll, such as an upright axis or two heights."""
     for wheel in (left, right):
         name = wheel.joint.name
         if abs(wheel.axis[2]) > _UPRIGHT:
@@ -260,7 +261,7 @@ def lies_flat(robot: Robot, wheel: Wheel) -> bool:
 
 
 def radii(robot: Robot, wheel: Wheel) -> list[float]:
-    """Return the radii of round collisions that turn with a wheel, without collisions of visuals."""
+    """Return the radii of a wheel's round collisions, or of its visuals if it has no collision."""
     for tag in ("collision", "visual"):
         found = []
         for shape, pose in _turning_shapes(robot, wheel, tag):

@@ -84,7 +84,10 @@ def _first_element(geometry: _Element) -> _Element | None:
 
 @memoized
 def level_of_absence(subject: Subject) -> str:
-    """Return the level of what a description lacks, lower for a xacro or what may be a part."""
+    """Return the level of what a description lacks, lower if it may be a part of a robot.
+
+    A xacro file may be one, or have it behind a condition. What is surely a part has only links
+    with a parent."""
     robot = subject.robot
     is_part = robot.links and not roots(robot) and any(it not in robot.link for it in robot.below)
     levels = (WARNING, NOTE) if subject.origins else (ERROR, WARNING)

@@ -95,6 +95,5 @@ def _passed_value(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
 
 
 def _attributes(source: bytes, start: int) -> dict[bytes, bytes]:
-    """Return the attributes of a tag as they are written."""
     tag = source[start : tag_end(source, start)]
     return {it[1]: it[2] if it[2] is not None else it[3] for it in _ATTRIBUTE.finditer(tag)}

@@ -41,18 +41,18 @@ def bridge_row(file: NamedFile) -> Iterator[Finding]:
     if isinstance(root, yaml.MappingNode):
         hint = "write '- ' before it"
         yield remark_at(root, "the file is no list of rows: none is bridged", hint)
-    for node in _rows(file):
+    for node in _bridge_rows(file):
         yield from (remark_at(*fault) for fault in faults(node))
 
 
-def _rows(file: NamedFile) -> list[yaml.Node]:
+def _bridge_rows(file: NamedFile) -> list[yaml.Node]:
     return items(file.document.root) if file.document else []
 
 
 @rule("MB858", "bridge-key", WARNING, formats=(BRIDGE,))
 def bridge_key(file: NamedFile) -> Iterator[Finding]:
     """Report unknown keys of each row."""
-    for row in map(row_of, _rows(file)):
+    for row in map(row_of, _bridge_rows(file)):
         for name, (key, _) in row.items():
             if name not in KEYS:
                 message = f"the bridge knows no {name!r}, and ignores it"
@@ -63,7 +63,7 @@ def bridge_key(file: NamedFile) -> Iterator[Finding]:
 def not_converted(file: NamedFile) -> Iterator[Finding]:
     """Report rows whose types do not belong together."""
     known: Mapping[str, list[str]] = bridge_data()["pairs"]
-    for node in _rows(file):
+    for node in _bridge_rows(file):
         ros, gz = (text_in(row_of(node), key) for key in TYPES)
         bare, belongs = _without_package(gz), known.get(ros, ())
         others = [it for it, types in known.items() if bare in types]
@@ -98,7 +98,7 @@ def second_model(file: NamedFile) -> Iterator[Finding]:
 @robots_rule("MB890", "bridge-not-per-robot", WARNING, BRIDGE)
 def shared_service(file: NamedFile) -> Iterator[Finding]:
     """Report services that are not those of the world."""
-    for node in _rows(file):
+    for node in _bridge_rows(file):
         service = text_in(row_of(node), SERVICE)
         if service and not service.strip("/").startswith("world/") and not any(faults(node)):
             message = f"service {service!r} is bridged once for all robots"
@@ -125,9 +125,12 @@ class GzTopic(NamedTuple):
 
 @rule("MB879", "bridge-row-without-gz-topic", WARNING, formats=(BRIDGE,), options={"build": True})
 def no_gz_topic(file: NamedFile) -> Iterator[Finding]:
-    """Report rows whose gz topic the description lacks, or has with another type or direction."""
+    """Report rows whose gz topic the description has with another type or direction, or lacks.
+
+    A missing one only if it is read and another of its type exists: senders of other types are
+    unknown."""
     known: GzTopics | None = file.memo.get(GzTopics)
-    for row in map(row_of, _rows(file) if known else ()):
+    for row in map(row_of, _bridge_rows(file) if known else ()):
         _, node = row.get(GZ) or row.get(BOTH) or (None, None)
         if node is not None and known is not None:
             yield from _topic_faults(node, row, known.topics)

@@ -144,7 +144,7 @@ def wrong_types(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_refused(file: NamedFile, section: Section, it: Setting, known: Sequence[Declared]) -> bool:
-    """Return whether every release refuses a value; False for a package of the user's own."""
+    """Return whether every release refuses a value that its node surely gets."""
     package, around = section.node.package if section.node else "", sources_around(file.file)
     reached = package != "nav2_costmap_2d" or "/" in section.title.partition(":")[0]
     if any(older_nodes(file)) or not reached:
@@ -282,7 +282,6 @@ def _has_type_of(fact: Declared, it: Setting) -> bool:
 
 
 def _type_of(value: Value) -> str:
-    """Return the type of a value, as declarations call it."""
     if isinstance(value, list):
         return f"{_WORDS[type(value[0])]}_array" if value else "array"
     return _WORDS[type(value)]

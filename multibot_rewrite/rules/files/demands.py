@@ -26,7 +26,9 @@ _OWN = lazy_compile(r"nav2_\w+_bt_node")
 
 
 class Demand(NamedTuple):
-    """One check of a parameter with its arguments, the ``source`` of that, and its ``releases``."""
+    """One check of a given parameter with its arguments; ``source`` says where it is.
+
+    ``releases`` are those that have it, if not all do."""
 
     section: Section
     given: Setting

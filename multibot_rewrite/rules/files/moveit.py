@@ -111,15 +111,14 @@ def groups_not_in_srdf(file: NamedFile) -> Iterator[Finding]:
     # A build that has the SRDF knows its groups, and says it as of any name.
     told = file.is_certain and bool(file.declared.get("group"))
     asked = bool(sites) and not told and not is_for_ros_1(file.file)
-    groups = _groups(file.file) if asked else frozenset()
+    groups = _groups_in_srdfs(file.file) if asked else frozenset()
     for it in sites if groups else ():
         if it.text and it.text not in groups and it.text.isidentifier():
             message = f"no SRDF of its package has a group {it.text!r}"
             yield remark(it, message, did_you_mean(it.text, groups) or f"there is {min(groups)}")
 
 
-def _groups(file: str) -> frozenset[str]:
-    """Return the groups of the SRDF files in a file's folder; none where a macro may make them."""
+def _groups_in_srdfs(file: str) -> frozenset[str]:
     found: set[str] = set()
     for data in _srdfs(file):
         names = {it[1].decode("utf-8", "replace") for it in _GROUP.finditer(data)}

@@ -84,7 +84,6 @@ def _undeclared_names(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Findi
 
 
 def _kind_of(site: Site) -> str:
-    """Return the kind of a name as a message calls it: that of an interface is a joint."""
     return "joint" if site.kind == "interface" else site.kind
 
 
@@ -183,16 +182,17 @@ def _guessed(file: NamedFile) -> Iterator[Finding]:
         doubt = in_doubt(file.context, section, names)
         left = [it for it in taken if it.kind in doubt]
         if guessed := [it for it in taken if not it.is_sure and it not in left]:
-            told = f"parameters that hold names are guessed: {_keys(guessed)}"
+            told = f"parameters that hold names are guessed: {_listed_keys(guessed)}"
             yield _unknown_node(guessed[0], section.path, told)
         if left:
             other = doubt[left[0].kind]
             told = f"{other.value!r} in line {line_of(other)} may be a name, too: "
-            yield _unknown_node(left[0], section.path, f"{told}{_keys(left)} stay as they are")
+            yield _unknown_node(
+                left[0], section.path, f"{told}{_listed_keys(left)} stay as they are"
+            )
 
 
-def _keys(sites: Iterable[Site]) -> str:
-    """Return the keys of names, each once, as a text."""
+def _listed_keys(sites: Iterable[Site]) -> str:
     return ", ".join(dict.fromkeys(it.key for it in sites))
 
 
@@ -258,7 +258,7 @@ def _is_claimed(file: NamedFile, site: Site) -> bool:
 
 
 def _is_interface(file: NamedFile, value: str) -> bool:
-    """Return whether it is an interface as ``elbow/position``, not a topic as ``imu/data``."""
+    """Return whether it is an interface like ``elbow/position``; ``imu/data`` is rather a topic."""
     *chain, interface = value.split("/")
     kinds = ("joint", "gpio", "sensor") if "." in interface else ("joint", "gpio")
     names = file.context.names

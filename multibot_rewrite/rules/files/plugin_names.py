@@ -65,7 +65,7 @@ def unknown_classes(file: NamedFile) -> Iterator[Finding]:
     for it, given, name in _named_classes(file):
         if name not in told:
             where = f"{it.section.title}: {given.name}"
-            yield from _of_class(given.node, where, name, it.words[0], release)
+            yield from _class_findings(given.node, where, name, it.words[0], release)
     for it in demands(file, "critics"):
         yield from _unknown_critics(it)
     for section in sections(file):
@@ -74,7 +74,7 @@ def unknown_classes(file: NamedFile) -> Iterator[Finding]:
         class_ = str(own.value) if own else ""
         if own and _package(class_) in _controller_packages():
             where = f"{section.title}: {TYPE}"
-            yield from _of_class(own.node, where, class_, _CONTROLLER, release)
+            yield from _class_findings(own.node, where, class_, _CONTROLLER, release)
 
 
 def classes_of_other_releases(file: NamedFile) -> list[str]:
@@ -109,8 +109,10 @@ def words_of(given: Setting) -> list[str]:
     return [str(word) for word in value] if isinstance(value, list) else str(value or "").split()
 
 
-def _of_class(node: yaml.Node, where: str, name: str, base: str, release: str) -> Iterator[Finding]:
-    """Yield what is wrong with the class at a node."""
+def _class_findings(
+    node: yaml.Node, where: str, name: str, base: str, release: str
+) -> Iterator[Finding]:
+    """Yield the finding about a class that no package of the release registers."""
     known = plugin_bases()[base]
     if name in known.classes and has_release(known.classes[name], release):
         return

@@ -90,7 +90,7 @@ def unfilled(file: NamedFile) -> Iterator[Finding]:
 
 def slashes(file: NamedFile) -> Iterator[Finding]:
     """Report values with a slash that are known to be frames."""
-    for site in _frames(file):
+    for site in _frame_names(file):
         if site.text.startswith("/") and is_plain(site.text) and not _is_spaced(site.text):
             name, level = f"frame {site.text!r}", NOTE if site.bare else ""
             message = f"{name} starts with a slash, which tf2 refuses"
@@ -102,7 +102,7 @@ def slashes(file: NamedFile) -> Iterator[Finding]:
 @rule("MB865", "frame-with-white-space", WARNING, formats=EVERY)
 def frame_with_white_space(file: NamedFile) -> Iterator[Finding]:
     """Report values with white space that are known to be frames."""
-    for site in _frames(file):
+    for site in _frame_names(file):
         if _is_spaced(site.text) and is_filled(site.text):
             message = (
                 f"frame {site.text!r} has white space in it: it is another one, and not rewritten"
@@ -110,8 +110,7 @@ def frame_with_white_space(file: NamedFile) -> Iterator[Finding]:
             yield remark(site, message, f"write {'_'.join(site.text.split())}")
 
 
-def _frames(file: NamedFile) -> Iterator[Site]:
-    """Yield the values that are known to be frames."""
+def _frame_names(file: NamedFile) -> Iterator[Site]:
     # A block of text has a line break at its end, which is told where it is rewritten.
     free = (it for it in file.names if not it.in_key and not it.text.endswith("\n"))
     yield from (it for it in free if it.kind == "frame" and it.is_sure and it.text)
@@ -204,7 +203,7 @@ def _robot_at_an_end(token: str, words: Iterable[str]) -> str:
 
 
 def _means_robot(word: str, name: str) -> bool:
-    """Return whether a robot's name in a name means the robot; a part's name has to be there twice."""
+    """Return whether a robot's name as a segment means the robot: ``camera`` only where it is twice."""
     return word not in PARTS or f"/{word}/{word}/" in f"/{name.strip('/')}/"
 
 

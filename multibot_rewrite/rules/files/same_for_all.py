@@ -12,7 +12,12 @@ from multibot_rewrite.knowledge.parameters import is_absolute
 from multibot_rewrite.producers.addresses import held_by
 from multibot_rewrite.related_files.context import Context
 from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, RVIZ, NamedFile
-from multibot_rewrite.related_files.names.by_kind import expressible, frames_differ, is_plain
+from multibot_rewrite.related_files.names.by_kind import (
+    expressible,
+    frames_differ,
+    is_emptied,
+    is_plain,
+)
 from multibot_rewrite.related_files.names.placeholders import filled, is_robot
 from multibot_rewrite.related_files.names.rename_map import is_declared
 from multibot_rewrite.related_files.params.sections import ANY, ParamSection, flattened, scalars
@@ -104,8 +109,11 @@ def robot_twice(file: NamedFile) -> Iterator[Finding]:
     for site in file.names if not layout.at_run_time else ():
         # Where there is none, or none is filled in, nothing is twice.
         if site.kind in RUN_TIME and site.text.strip("/") and not is_robot(site.text):
-            level = "" if certain and is_plain(site.text) else WARNING
-            yield remark(site, prefix_twice(site.key, site.text), 'write ""', level)
+            emptied = is_emptied(file.context, site.kind, site.text)
+            level = "" if certain and is_plain(site.text) and not emptied else WARNING
+            message = prefix_twice(site.key, site.text)
+            hint = "nothing to do; a rewrite empties it" if emptied else 'write ""'
+            yield remark(site, message, hint, level)
     for place in (it for one in file.shown if layout.frames for it in one.places):
         given = place.slot.value
         if place.kind == TF_PREFIX and given and not is_robot(given):

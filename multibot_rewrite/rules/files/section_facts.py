@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the parameter files of a robot, MoveIt's too, set for nodes and plugins, and declarations."""
+"""What the parameter files of a robot, MoveIt's too, set for nodes and plugins; what declares it."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -55,7 +55,7 @@ def beside(file: NamedFile) -> Beside:
     """Return the robot's parameter files; for a file alone, those in its folder."""
     if Beside not in file.memo:
         release = file.context.distro
-        file.memo[Beside] = Beside(_given_by(file, _in_folder(file)), load_nodes(release))
+        file.memo[Beside] = Beside(_given_by(file, _files_in_folder(file)), load_nodes(release))
     found: Beside = file.memo[Beside]
     return found
 
@@ -98,8 +98,7 @@ def _given_by(file: NamedFile, documents: Iterable[YamlText]) -> tuple[Run, ...]
         return ()
 
 
-def _in_folder(file: NamedFile) -> Iterator[YamlText]:
-    """Yield the parameter files in the folder of a file, itself too."""
+def _files_in_folder(file: NamedFile) -> Iterator[YamlText]:
     own = os.path.abspath(file.file)
     folder = os.path.dirname(own)
     for path in (os.path.join(folder, it) for it in sorted(entries(folder))):
@@ -122,7 +121,9 @@ class Setting(NamedTuple):
 
 
 class Section(NamedTuple):
-    """A node's or plugin's parameters and declarations; ``whole``: all of its node, itself ``at``."""
+    """The parameters of one node or plugin, each with what declares it, and all that is declared.
+
+    ``whole`` is all that the node is given, where names of a plugin begin with ``at``."""
 
     title: str
     node: NodeParameters | None
@@ -150,21 +151,20 @@ def _sections(file: NamedFile) -> Iterator[Section]:
             return
         given = _settings_below(file.document, it.body)
         if name in ANY or PLACEHOLDER.search(it.path):
-            yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
+            yield _section(it.path, None, given, declared_by(EVERY_NODE), _settings_by_name(given))
             continue
         type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
         node = it.node
         if node is not None and not _is_this_controller(node, name, type_, given):
             node = None
         facts = facts_of_node(node, type_, file.file, file.roots)
-        whole = _by_name(given)
+        whole = _settings_by_name(given)
         below, rest = _plugin_sections(it.path, given, whole)
         yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), whole)
         yield from below
 
 
 def _moveit_section(file: NamedFile) -> Iterator[Section]:
-    """Yield the section that a file of MoveIt becomes."""
     kind = find_kind(file.document) if file.document else None
     if file.document is None or kind is None or is_for_ros_1(file.file):
         return
@@ -174,10 +174,10 @@ def _moveit_section(file: NamedFile) -> Iterator[Section]:
     read = _settings_below(file.document, root, above) if root is not None else ()
     given = tuple(it._replace(value=_moveit_value(it.node, it.value)) for it in read)
     facts = facts_of_node(node, "", file.file, file.roots)
-    yield _section(node.name, node, given, facts, _by_name(given))
+    yield _section(node.name, node, given, facts, _settings_by_name(given))
 
 
-def _by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
+def _settings_by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
     return {it.name: it for it in given}
 
 
@@ -189,7 +189,6 @@ def _section(
     whole: Mapping[str, Setting],
     at: str = "",
 ) -> Section:
-    """Return a section, with the declarations of each given parameter."""
     exact = lists_by_key((it.path, it) for it in facts if "<" not in it.path)
     wild = [(it.path.rpartition(".")[2], it) for it in facts if "<" in it.path]
     known = tuple(
@@ -258,11 +257,15 @@ def _is_this_controller(
 
 def _settings_below(document: YamlText, body: yaml.Node, above: str = "") -> tuple[Setting, ...]:
     every = settings(body, above)
-    return tuple(Setting(name, key, node, _value(document, node)) for name, key, node in every)
+    return tuple(
+        Setting(name, key, node, _known_value(document, node)) for name, key, node in every
+    )
 
 
 def _moveit_value(node: yaml.Node, value: Value | None) -> Value | None:
-    """Return a value of MoveIt's files as launch_param_builder reads it; None for an expression."""
+    """Return a value of MoveIt's files as launch files read it; None for an expression of an angle.
+
+    Source: launch_param_builder utils.py, load_yaml; moveit2 moveit_configs_utils."""
     if isinstance(node, yaml.SequenceNode) and isinstance(value, list):
         each = [_moveit_value(it, one) for it, one in zip(node.value, value, strict=True)]
         return None if None in each else cast("Value", each)
@@ -273,8 +276,7 @@ def _moveit_value(node: yaml.Node, value: Value | None) -> Value | None:
         return None
 
 
-def _value(document: YamlText, node: yaml.Node) -> Value | None:
-    """Return the value of a node; None where rcl reads none, or it has a placeholder."""
+def _known_value(document: YamlText, node: yaml.Node) -> Value | None:
     try:
         value = value_of(document, node)
     except InputError:

@@ -54,7 +54,7 @@ def broken_commands(file: NamedFile) -> Iterator[Finding]:
 
 
 def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
-    type_ = _text(values, "type")
+    type_ = _text_of(values, "type")
     if type_ not in _TYPES:
         said = f"is of type {type_!r}" if type_ else "has no type"
         yield said, f"write one of {', '.join(_TYPES)}"
@@ -62,7 +62,7 @@ def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
     middle, named, starts = _TYPES[type_]
     for word in (it for it in ("interface_type", named) if it not in values):
         yield f"has no {word}", f"add {word}"
-    kind = _text(values, "interface_type")
+    kind = _text_of(values, "interface_type")
     parts = kind.split("/")
     if kind and (len(parts) != 3 or parts[1] != middle):
         yield f"has the interface_type {kind!r}", f"write PACKAGE/{middle}/{parts[-1]}"
@@ -93,7 +93,7 @@ def _topic_command_faults(values: _Values, kind: str) -> Iterator[tuple[str, str
             yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "use one of these"
 
 
-def _text(values: _Values, name: str) -> str:
+def _text_of(values: _Values, name: str) -> str:
     value = values[name].value if name in values else None
     return value if isinstance(value, str) else ""
 
@@ -106,7 +106,7 @@ _Filters = Mapping[str, Mapping[str, Setting]]
 def broken_chains(file: NamedFile) -> Iterator[Finding]:
     """Report every chain of a node of laser_filters."""
     own = (it for it in sections(file) if it.node and it.node.package == "laser_filters")
-    for section, filters in ((it, chain) for it in own for chain in _chains(it).values()):
+    for section, filters in ((it, chain) for it in own for chain in _filters_by_chain(it).values()):
         last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1
         for number, parts in filters.items():
             if not number or int(number) > last:
@@ -117,8 +117,7 @@ def broken_chains(file: NamedFile) -> Iterator[Finding]:
         yield from _incomplete_filters(section, filters)
 
 
-def _chains(section: Section) -> Mapping[str, _Filters]:
-    """Return the filters of each chain by their numbers."""
+def _filters_by_chain(section: Section) -> Mapping[str, _Filters]:
     found: dict[str, dict[str, dict[str, Setting]]] = {}
     for it in section.whole.values():
         if part := FILTER.fullmatch(it.name):

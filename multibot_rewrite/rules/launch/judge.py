@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding, Rule
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.models import Model
 from multibot_rewrite.producers.launch.running import DESCRIPTION
@@ -14,6 +14,7 @@ from multibot_rewrite.rules.launch import models, started, words as rules_of_wor
 from multibot_rewrite.rules.system.planned_nodes import missing_node
 from multibot_rewrite.rules.system.states import interface_claimed_twice, interface_not_exported
 from multibot_rewrite.rules.system.tf_pieces import is_sure, tf_tree_in_pieces
+from multibot_rewrite.rules.system.unsent import FOR_DRIVERS, is_for_driver
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import System
@@ -28,17 +29,24 @@ RULES = tuple(sorted(_DECLARED, key=lambda it: it.code))
 
 
 def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
-    """Return a finding about a launch at its level there: an unmet claim becomes an error."""
+    """Return a finding about a launch at its certain level.
+
+    An unmet claim becomes an error, and what the driver of a real robot may send a note."""
     if it.code in CLAIMS and it.level == WARNING:
         return it._replace(level=ERROR)
-    cut = it.code == tf_tree_in_pieces.code and it.level == ERROR
-    if cut and not is_sure(seen, it, _is_moved(it, launched, seen)):
-        return it._replace(level=WARNING)
-    return it
+    if it.code not in FOR_DRIVERS or it.level not in (ERROR, WARNING):
+        return it
+    own = _models_of(it, launched, seen)
+    cut = it.code == tf_tree_in_pieces.code
+    if cut and is_sure(seen, it, any(_moves_itself(one, launched, seen) for one in own)):
+        return it
+    if not own and is_for_driver(seen, it):
+        return it._replace(level=NOTE)
+    return it._replace(level=WARNING) if cut else it
 
 
-def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
-    """Return whether a plugin of a model moves the robot whose frames a finding names."""
+def _models_of(it: Finding, launched: Launched, seen: Index) -> list[Model]:
+    """Return the spawned models that may be the robot whose frames a finding names."""
     models = [one for one in launched.models.found if one.spawned]
     edges = (one for one in seen.system.edges if not {one.parent, one.child}.isdisjoint(it.names))
     senders = [name for one in edges for name in one.publishers]
@@ -47,8 +55,7 @@ def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
     published = {one.full_name: one.value(DESCRIPTION) for one in launched.nodes}
     own = {text for name in senders if (text := published.get(name))}
     found = [one for one in models if one.text in own]
-    others = [one for one in models if not own or one.text not in published.values()]
-    return any(_moves_itself(one, launched, seen) for one in found or others)
+    return found or [one for one in models if not own or one.text not in published.values()]
 
 
 def _moves_itself(model: Model, launched: Launched, seen: Index) -> bool:
@@ -63,7 +70,7 @@ def _moves_itself(model: Model, launched: Launched, seen: Index) -> bool:
 
 
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
-    """Yield the findings; nodes that another launch file may start are missing inconclusively."""
+    """Yield the findings; a missing node is inconclusive if another launch file may start it."""
     sources = {it.name: it.node_set or it.place.file for it in plan.nodes}
     begun = {"", *(sources.get(it.name, "") for it in seen.nodes)}
     for it in found:

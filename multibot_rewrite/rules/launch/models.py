@@ -116,13 +116,13 @@ def _unbridged_topics(launched: Launched, inwards: bool) -> Iterator[tuple[InSim
         for it in model.topics
         if (it.direction == DIRECTIONS["out"]) is inwards
     ]
-    alike = {_plain_topic(model, one) for model, one in every if one[1] in told}
+    alike = {_topic_without_robot(model, one) for model, one in every if one[1] in told}
     for model, one in every:
-        if one[1] not in told and _plain_topic(model, one) in alike:
+        if one[1] not in told and _topic_without_robot(model, one) in alike:
             yield model, one[1]
 
 
-def _plain_topic(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
+def _topic_without_robot(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
     """Return a topic of a model without its name, and without the namespace of its description."""
     kind, gz = topic
     own = {model.name, *model.words.get("-topic", "").strip("/").split("/")[:-1]}

@@ -23,9 +23,8 @@ from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import check_node_name, expand, resolve_bound
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
-from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts, names_its_process
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of
@@ -67,7 +66,7 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
 
 
 def _no_manager(launched: Launched) -> Iterator[Finding]:
-    """Yield the spawners whose manager nothing starts; inconclusive if another file may do so."""
+    """Yield the spawners whose manager nothing starts; inconclusive if other files may start it."""
     there = [it.full_name for it in launched.nodes if _is_known_as(it, MANAGER)]
     described = bool(launched.models.found) and not launched.models.lost
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
@@ -120,7 +119,6 @@ def no_container(launched: Launched) -> Iterator[Finding]:
 
 
 def _is_known_as(it: Run, known: str) -> bool:
-    """Return whether a node is this one of the library."""
     return it.fact.known == known
 
 
@@ -218,7 +216,9 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
 
 
 def keeps_no_bond(node: NodeFacts) -> bool:
-    """Return whether a node has a life cycle and no bond, without which its manager aborts."""
+    """Return whether a node has a life cycle and keeps no bond: its manager then aborts.
+
+    Source: nav2_lifecycle_manager jazzy, lifecycle_manager.cpp (``bond_timeout``)."""
     names = [it.name for it in node.endpoints]
     return f"~{_CHANGE}" in names and _BOND not in names
 
@@ -239,7 +239,9 @@ def is_managed(kind: str) -> bool:
 
 
 def _managed_nodes(it: Run) -> Iterator[str]:
-    """Yield the nodes whose services a manager calls, after its remap rules."""
+    """Yield the nodes whose services a manager calls, after its remap rules.
+
+    Source: nav2_lifecycle_manager, lifecycle_service_client.cpp."""
     names = it.value("node_names")
     bound = bound_of(it.name, it.namespace, it.rules)
     for one in names if isinstance(names, list) else ():

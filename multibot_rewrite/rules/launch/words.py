@@ -82,14 +82,17 @@ def _transform_faults(it: Run) -> Iterator[tuple[str, str]]:
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
-    """Report rules for a mistyped name of a node, if no parameter has the name or target."""
+    """Report rules for a mistyped name of a node, if no parameter has or switches off the name."""
+    library = built_in(launched.release).nodes
     for it in launched.nodes:
         above = f"{it.full_name.rpartition('/')[0]}/"
-        known = it.fact.endpoints
-        names = [end.name.removeprefix(above).lstrip("/~") for end in known]
+        ends = (*it.fact.endpoints, *library.get(it.fact.known, it.fact).endpoints)
+        names = [end.name.removeprefix(above).lstrip("/~") for end in ends]
         for old, new in it.rules:
             bare = old.lstrip("/~")
-            asked = ":" not in old and not {bare, new.lstrip("/~")} & {*names}
+            # Of an image the names of its transports are below its own.
+            real = {bare, bare.rpartition("/")[0], new.lstrip("/~")}
+            asked = ":" not in old and real.isdisjoint(names)
             near = nearest(bare, names, SLIP) if asked else ""
             if near and not bare.startswith("__"):
                 message = f"{it.full_name}: the remap rule for {old} matches nothing"
@@ -135,14 +138,15 @@ def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
     started = lists_by_key(((it.place, it.program), it.full_name) for it in launched.nodes)
     # Of others only their code has the name.
     named = {it.full_name for it in launched.nodes if it.fact.is_known}
-    readers: dict[tuple[str, str], list[str]] = defaultdict(list)
+    readers: dict[tuple[str, str], dict[str, None]] = defaultdict(dict)
     for node in launched.graph.nodes:
         names = started.get((node.place, f"{node.package}/{node.executable}"), ())
         named |= {*names} if node.name else set()
         for it in (one for one in node.parameters if one.file and names):
-            readers[it.file, it.text] += names
+            readers[it.file, it.text] |= dict.fromkeys(names)
     found: dict[Place, tuple[str, list[str]]] = {}
-    for (file, text), names in readers.items():
+    for (file, text), own in readers.items():
+        names = [*own]
         with suppress(InputError):
             sections = raw_sections(document_of(file, text))
             by_word = lists_by_key((last_word(it.path), it) for it in sections)
@@ -172,6 +176,8 @@ def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
 of_no_node = OF_NO_NODE._replace(check=_sections_of_no_node)
 
 
+# That of libyaml is faster.
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _LEFT = lazy_compile(rf"<[A-Za-z_]\w*>|\$\({IN_SUBSTITUTION}\)|\$\{{\w+\}}")
 
 
@@ -185,7 +191,7 @@ def _placeholders(launched: Launched) -> Iterator[Finding]:
             files.setdefault((given_file.file, given_file.text), it.place)
     for (file, text), start in files.items():
         with suppress(yaml.YAMLError):
-            for one in yaml.scan(text) if _LEFT.search(text) else ():
+            for one in yaml.scan(text, Loader=_LOADER) if _LEFT.search(text) else ():
                 line = Place(file, one.start_mark.line + 1) if file else start
                 given += [(line, one.value)] if isinstance(one, yaml.ScalarToken) else []
     told = set()

@@ -114,7 +114,7 @@ def _number_faults(child: _Element, row: Value, text: str, where: str) -> Iterat
 def _place_faults(
     child: _Element, above: str, name: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
-    """Yield a fault for a parameter that is read nowhere, or only in a block that is there."""
+    """Yield a fault for a parameter that is read nowhere, or only inside a block that is there."""
     blocks = section.blocks_of.get(name)
     if blocks is None:
         yield from _unknown_parameter(child, above, name, section, definitions)

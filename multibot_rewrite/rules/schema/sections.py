@@ -47,7 +47,7 @@ class Child(NamedTuple):
 
 
 class UrdfPart(NamedTuple):
-    """One element of the schema; ``later``: ``@attributes`` and children of later versions."""
+    """One element of the schema; ``later``: attributes (``@name``) and children of later versions."""
 
     name: str
     attributes: Mapping[str, Kind]
@@ -127,7 +127,6 @@ def _kind(words: Sequence[str]) -> Kind:
 
 
 def _version_behind(start: str, words: Sequence[str]) -> Version:
-    """Return the version behind a key among the words of a row; the oldest without it."""
     given = (it.removeprefix(start) for it in words if it.startswith(start))
     word = next(given, str(OLDEST))
     found = read_version(word)

@@ -13,10 +13,9 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.planning.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rules.system.instead import COMMON
 from multibot_rewrite.system.index import Index
-from multibot_rewrite.system.records import ACTION, End
+from multibot_rewrite.system.records import ACTION, COMPONENT, HOST, PLUGIN, SPAWNER, End
 
 # What a node does with a name, by the role of its endpoint.
 DOES, TO_DO = ({role: said.split(" | ")[at] for (role,), said in ROWS["roles"]} for at in (0, 1))
@@ -235,7 +234,7 @@ def _other_parts(parts: list[str], at: int) -> _Rest:
 
 
 def _is_slip(one: str, other: str) -> bool:
-    """Return whether each part between underscores is equal or nearly so; cmd_vel_ui is no slip."""
+    """Return whether each part between underscores is nearly equal: not cmd_vel_out and cmd_vel_ui."""
     parts = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
     return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
 

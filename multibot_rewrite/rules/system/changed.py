@@ -52,7 +52,7 @@ def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def untold(found: Iterable[Finding]) -> list[Finding]:
-    """Return the findings without changes that others explain; those of an error's names are errors."""
+    """Return the findings without changes that others explain, at the level of errors about them."""
     every = [*found]
     errors = {
         name
@@ -120,6 +120,7 @@ def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
 
 
 def _type_and_qos(end: End) -> str:
+    """Return type and unusual QoS of an end as a text."""
     return " ".join((end.type, *qos_words(end)))
 
 
@@ -162,7 +163,7 @@ def _sender(seen: Index, edge: Edge) -> str:
 
 def _changed_transforms(before: System, seen: Index) -> Iterator[_Change]:
     """Yield changed transforms, if tf was read both times; not those of a node that is gone."""
-    old, new = _edges(before.edges), _edges(seen.system.edges)
+    old, new = _edges_by_place(before.edges), _edges_by_place(seen.system.edges)
     if not (old and new):
         return
     above = {(child, topic): parent for parent, child, topic in new}
@@ -195,7 +196,7 @@ def _changed_transforms(before: System, seen: Index) -> Iterator[_Change]:
         )
 
 
-def _edges(edges: Iterable[Edge]) -> Mapping[_Place, Edge]:
+def _edges_by_place(edges: Iterable[Edge]) -> Mapping[_Place, Edge]:
     return {
         (it.parent.removeprefix("/"), it.child.removeprefix("/"), it.topic): it
         for it in edges

@@ -39,7 +39,7 @@ _SENT = (TOPIC, PUBLISHES, CLOCK)
 def no_clock(seen: Index) -> Iterator[Finding]:
     """Yield a finding for each robot on simulated time without a clock."""
     by_robot = _on_simulated_time(seen)
-    if _clocks(seen):
+    if _clock_senders(seen):
         return
     for robot, nodes in by_robot.items():
         who = shorten(nodes)
@@ -61,7 +61,7 @@ def no_clock(seen: Index) -> Iterator[Finding]:
         )
 
 
-def _clocks(seen: Index) -> tuple[str, ...]:
+def _clock_senders(seen: Index) -> tuple[str, ...]:
     return nodes_of(seen.ends_at(TOPIC, CLOCK).publishers)
 
 
@@ -75,7 +75,7 @@ def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
 @system_rule("MG502", "two-clocks", ERROR)
 def two_clocks(seen: Index) -> Iterator[Finding]:
     """Report several clocks on a topic, also of two nodes with one name."""
-    nodes = _clocks(seen)
+    nodes = _clock_senders(seen)
     times = {node: _clock_nodes(seen, node) for node in nodes}
     if sum(max(1, count) for count in times.values()) > 1:
         who = and_then(nodes) if len(nodes) > 1 else f"{times[nodes[0]]} nodes {nodes[0]}"
@@ -108,7 +108,10 @@ def _processes(seen: Index) -> Mapping[str, Set[str]]:
 @system_rule("MG504", "clock-stands-or-goes-back", ERROR, absence=True)
 def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
     """Report a clock as it was heard; two clocks are another finding."""
-    clocks, nodes = _clocks(seen), [it for own in _on_simulated_time(seen).values() for it in own]
+    clocks, nodes = (
+        _clock_senders(seen),
+        [it for own in _on_simulated_time(seen).values() for it in own],
+    )
     for it in (one for one in seen.system.heard if one.topic == CLOCK and len(clocks) == 1):
         about = {"node": clocks[0], "names": (CLOCK,)}
         if it.back:
@@ -130,7 +133,7 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
     """Yield the findings of MG503."""
     yield from _not_as_planned(seen)
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
-    if not simulated or not _clocks(seen):
+    if not simulated or not _clock_senders(seen):
         return
     untold = without_clock(seen.system)
     asked = [it for it in seen.nodes if not is_viewer(it) and it not in untold]

@@ -101,7 +101,7 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
 
 
 def _meant_commands(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[str]:
-    """Return the obeyed names that a sender may mean: its robot's own, otherwise those of all."""
+    """Return the obeyed names that a sender may mean: its robot's own; of no robot, those of all."""
     mine = only(robots_of(seen, nodes_of(ends.publishers)))
     if not mine:
         return names
@@ -116,7 +116,7 @@ def _like_command(seen: Index, ends: Ends, known: Spelled) -> str:
 
 
 def _topic_for_mux(seen: Index, ends: Ends) -> str:
-    """Return what a mux or Nav2's nodes should send on: the drive's topic, or a mux input; or ""."""
+    """Return what a mux or Nav2 should publish instead: what the drive reads, or a mux input; or ""."""
     robot, kinds = seen.robot(ends.name), _plain_types(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))
@@ -264,7 +264,7 @@ def _is_waited_for(seen: Index, ends: Ends) -> bool:
 
 @system_rule("MG312", "several-command-senders", WARNING, meant=(PUBLISHES,))
 def several_command_senders(seen: Index) -> Iterator[Finding]:
-    """Yield command topics with several senders; nodes of Nav2 or MoveIt send in turn, as one."""
+    """Yield command topics with several senders; nodes of Nav2 (or MoveIt) count as one."""
     for ends in seen.orders.values():
         if not words.moves(seen.plain(ends.name), ends.type):
             continue

@@ -12,6 +12,9 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import last_place, system_rule
+from multibot_rewrite.rules.system.likes import nodes_of_each
+from multibot_rewrite.rules.system.sharing import is_planned_with
+from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
@@ -40,21 +43,25 @@ class _Message(NamedTuple):
 @system_rule("MG411", "frame-id-of-another-robot", ERROR)
 def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
     """Report messages with another robot's frame, by the name of the frame."""
-    frames = _frames_by_topic(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
         # A sender of the frame's robot has the wrong topic, not the wrong frame.
         whose = {*map(seen.robot, senders)}
         if _is_of_another(seen, frame, robot, messages) and seen.frame_robot(frame) not in whose:
-            topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
-            owner = seen.frame_robot(frame)
-            message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
-            sent = {one for it in trees_of(seen, robot) for one in frames[it.topic].get(robot, ())}
-            own = only([it for it in sent if seen.plain_frame(it) == seen.plain_frame(frame)])
+            topics = [it.topic for it in messages if it.type.startswith((*_MEASURED, words.MAP))]
+            owner, own = seen.frame_robot(frame), only(_own_frames(seen, frame, robot))
             cause = f"set the frame of {_one_of(senders)} to {own or f'that of {robot}'}"
             yield frame_id_of_another_robot.finding(
-                f"{message}; sent by {_one_of(senders)}", cause,
+                f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}; sent by"
+                f" {_one_of(senders)}", cause,
                 robot=robot, node=senders[0], names=(frame,), settings=_with_frame(messages, own),
             )  # fmt: skip
+
+
+def _own_frames(seen: Index, frame: str, robot: str) -> list[str]:
+    """Return the frames that a robot has in place of another one's."""
+    frames = _frames_by_topic(seen)
+    sent = {one for it in trees_of(seen, robot) for one in frames[it.topic].get(robot, ())}
+    return [it for it in sent if seen.plain_frame(it) == seen.plain_frame(frame)]
 
 
 def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]:
@@ -64,9 +71,12 @@ def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]
 
 
 def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Message]) -> bool:
-    """Return whether measured messages are in a frame of another robot."""
-    measured = any(it.type.startswith(_MEASURED) for it in messages)
-    return bool(robot) and measured and seen.frame_robot(frame) not in ("", robot)
+    """Return whether measured messages, or a map, are in a frame of another robot."""
+    if not robot or seen.frame_robot(frame) in ("", robot):
+        return False
+    # A robot without a map's frame of its own may be on another one's map.
+    is_map = any(it.type == words.MAP for it in messages) and _own_frames(seen, frame, robot)
+    return bool(is_map) or any(it.type.startswith(_MEASURED) for it in messages)
 
 
 @system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
@@ -168,14 +178,8 @@ def _senders_of(seen: Index) -> Mapping[str, str]:
     return {it.child: it.publishers[0] for it in reversed(edges)}
 
 
-@once
-def _nodes_by_robot(seen: Index) -> Mapping[tuple[str, str], str]:
-    """Return the first node by its robot and its name without the robot's."""
-    return {(seen.robot(it), seen.plain(it)): it for it in reversed([*seen.nodes])}
-
-
 def _without_frame(seen: Index) -> Iterator[Finding]:
-    """Yield sensor and odometry messages without a frame, which tf2 refuses."""
+    """Yield sensor and odometry messages without a frame: tf2 refuses an empty frame_id."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         # Of odometry: its pose is known where all of the message was read.
@@ -223,7 +227,7 @@ def _elsewhere_hint(seen: Index, frame: str, robot: str, elsewhere: Sequence[str
     """Return which node of another robot sends it, and which one this robot has, or the other place."""
     there = _senders_of(seen).get(frame, "")
     if there and robot and seen.robot(there):
-        mine = _nodes_by_robot(seen).get((robot, seen.plain(there)), "")
+        mine = nodes_of_each(seen).get(robot, {}).get(seen.plain(there), "")
         remedy = f"see the log of {mine}" if mine else f"start such a node for {robot}"
         return f"{there} sends it on its own tf: {remedy}"
     if elsewhere:
@@ -286,54 +290,70 @@ def description_does_not_fit(seen: Index) -> Iterator[Finding]:
     for it in seen.system.descriptions:
         _, senders = sent_on(seen, it.topic)
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
-        if senders and (why := _description_fault(seen, it, robot)):
-            node, names = senders[0], (it.topic,)
-            yield description_does_not_fit.finding(*why, robot=robot, node=node, names=names)
+        if senders and (fault := _description_fault(seen, it, robot)):
+            message, hint, level = fault
+            yield description_does_not_fit.finding(
+                message, hint, level=level, robot=robot, node=senders[0], names=(it.topic,)
+            )
 
 
-def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """Return what is wrong with a description and what to do; None for nothing."""
+def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str, str] | None:
+    """Return what is wrong with a description, what to do, and the level; None for nothing."""
     if not it.links:
-        ends = seen.by_name[TOPIC, it.topic]
-        readers = nodes_of(at_work(ends.subscribers))
+        readers = nodes_of(at_work(seen.by_name[TOPIC, it.topic].subscribers))
         wait = f"; {shorten(readers, SEVERAL)} has no model" if readers else ""
-        return (
-            f"{it.topic} is empty, or no URDF{wait}",
-            "see the command that makes it: xacro's log",
-        )
+        message = f"{it.topic} is empty, or no URDF{wait}"
+        return message, "see the command that makes it: xacro's log", ERROR
     others = {seen.frame_robot(link) for link in it.links} - {""}
     if robot and others and robot not in others:
         message = f"{it.topic} has the links of {min(others)}: {shorten(it.links, SEVERAL)}"
-        return message, f"load the description of {robot}"
-    return _other_frames(seen, it, robot) or _other_joints(seen, it)
+        return message, f"load the description of {robot}", ERROR
+    own, pieces = _sent_frames(seen, it, robot)
+    if len(it.links) > 1 and own and not pieces:
+        links, sent = shorten(it.links, SEVERAL), shorten(own, SEVERAL)
+        message = f"no link of {it.topic} ({links}) is a frame that is sent ({sent})"
+        return message, "who sends tf has another description: load one in both", ERROR
+    return _joint_fault(seen, it, [links[0] for links in pieces[1:]]) if it.joints else None
 
 
-def _other_frames(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """Return a fault if no link of several is a sent frame, with or without a frame_prefix."""
-    trees = [one for one in trees_of(seen, robot) if one.edges]
-    frames = {one for tree in trees for one in frames_in(tree.edges)}
-    own = sorted(one for one in frames if seen.frame_robot(one) in ("", robot))
-    is_of = any(f"/{one}".endswith(f"/{link}") for one in own for link in it.links)
-    if len(it.links) < 2 or not own or is_of:
-        return None
-    links, sent = shorten(it.links, SEVERAL), shorten(own, SEVERAL)
-    message = f"no link of {it.topic} ({links}) is a frame that is sent ({sent})"
-    return message, "who sends tf has another description: load one in both"
+def _sent_frames(
+    seen: Index, it: Description, robot: str
+) -> tuple[list[str], Sequence[Sequence[str]]]:
+    """Return the frames that are sent of a robot or of none, and the links by the piece of tf that has
+    them, with or without a frame_prefix, the largest piece first; no piece if none is sent."""
+    edges = [one for tree in trees_of(seen, robot) for one in tree.edges]
+    own = sorted(one for one in frames_in(edges) if seen.frame_robot(one) in ("", robot))
+    above = {one.child.removeprefix("/"): one.parent.removeprefix("/") for one in edges}
+    named = ((one.rpartition("/")[2], seen.plain_frame(one), one) for one in own)
+    frames = {name: names[-1] for names in named for name in names}
+    if frames.keys().isdisjoint(it.links):
+        return own, ()
+    pieces = lists_by_key((root_of(frames.get(link, link), above), link) for link in it.links)
+    return own, sorted(pieces.values(), key=len, reverse=True)
 
 
-def _other_joints(seen: Index, it: Description) -> tuple[str, str] | None:
-    """Return what is wrong where no sender of joint states in its namespace has a joint of it."""
-    space = it.topic.rpartition("/")[0]
-    heard = [one for one in seen.system.heard if one.joints]
-    for topic in unique(one.topic for one in heard):
+def _joint_fault(seen: Index, it: Description, lost: Sequence[str]) -> tuple[str, str, str] | None:
+    """Return what is wrong where joint states in its namespace have none of its joints, or lack some
+    and links are ``lost`` for it; a link that nobody measures is only not shown, but planned with."""
+    heard = lists_by_key((one.topic, one.joints) for one in seen.system.heard if one.joints)
+    for topic, every in heard.items():
         type_, senders = sent_on(seen, topic)
-        said = [one.joints for one in heard if one.topic == topic]
-        fits = type_ == words.JOINTS and topic.rpartition("/")[0] == space and it.joints
-        if not fits or not senders or len(said) < len(senders):
+        beside = topic.rpartition("/")[0] == it.topic.rpartition("/")[0]
+        # One with joints of its own alone is healthy among others, so each of them has to be heard.
+        if type_ != words.JOINTS or not (beside and senders and len(every) >= len(senders)):
             continue
-        named = unique(name for joints in said for name in joints)
-        if {*named}.isdisjoint(it.joints):
-            own, who, sent = (shorten(names, SEVERAL) for names in (it.joints, senders, named))
+        named = unique(name for joints in every for name in joints)
+        lacking = [name for name in it.joints if name not in named]
+        own, who, sent, missed, links = (
+            shorten(one, SEVERAL) for one in (it.joints, senders, named, lacking, lost)
+        )
+        if len(lacking) == len(it.joints):
             message = f"{it.topic} has the joints {own}, and {who} sends {sent} on {topic}"
-            return message, f"give {who} the names that the description has"
+            return message, f"give {who} the names that the description has", ERROR
+        if lacking and lost:
+            message = (
+                f"{who} sends no state of {missed} on {topic}, so no transform leads to {links}"
+            )
+            level = ERROR if is_planned_with(seen, topic) else WARNING
+            return message, f"see which joints {who} is told to send", level
     return None

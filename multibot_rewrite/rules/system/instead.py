@@ -34,7 +34,7 @@ _TRIGGERS = "std_srvs/"
 
 
 def sent_instead(seen: Index, end: End) -> Ends | None:
-    """Return the topic or service of its robot that a node may have meant by an end; None for none."""
+    """Return the robot's topic or service that a node may have meant by an end; None for none."""
     if end.sure != RUNS:
         return None
     if known := meant(seen, end):
@@ -52,7 +52,7 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
 
 
 def _unread_topic(seen: Index, end: End) -> Ends | None:
-    """Return the one unread topic of the same type, or with a word in common; None for none."""
+    """Return the robot's one unread topic of the end's type, or with a word in common; or None."""
     robot = seen.robot(end.name)
     # Does its node read the same of another robot, from which it comes?
     merges = _has_another(seen, end) and not any(
@@ -80,7 +80,7 @@ def _unread_topic(seen: Index, end: End) -> Ends | None:
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
-    """Return whether it is made from the missing topic, or from others of its type."""
+    """Return whether a topic is made from the missing one, or from others of its type."""
     readers = _readers(seen)(end.name, end.type)
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
 
@@ -179,7 +179,7 @@ def _only_one(given: Sequence[Ends]) -> Ends | None:
 
 
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
-    """Return whether another node of its robot sends it, and its own does not read it yet."""
+    """Return whether another node of the robot sends a topic that this node does not read yet."""
     if any(it.node == end.node for it in ends.subscribers) or _waits_itself(seen, ends, end):
         return False
     robot = seen.robot(end.node) or seen.robot(end.name)
@@ -204,7 +204,7 @@ def _sent(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
 
 
 def _served(seen: Index, end: End) -> Iterator[Ends]:
-    """Yield services and actions of its type in its robot that nobody calls."""
+    """Yield the robot's services and actions of the end's type that nobody calls."""
     robot, last = seen.robot(end.node) or seen.robot(end.name), last_word(end.name)
     for it in _servers(seen).get((end.kind, end.type, robot), ()):
         own = any(one.node != end.node and seen.robot(one.node) == robot for one in it.servers)
@@ -300,7 +300,7 @@ def _sent_or_served(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int
 
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:
-    """Return whether another node of its robot or of none sends it, and it is not read already."""
+    """Return whether another node, of the robot or of none, sends what this node does not read yet."""
     if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
         return False
     own, twin = seen.robot(end.node), last_word(end.node)

@@ -127,6 +127,7 @@ def alike(nodes: Mapping[str, Mapping[str, str]]) -> Iterator[Sequence[str]]:
 
 
 def _are_alike(one: Set[str], other: Set[str]) -> bool:
+    """Return whether two sets of nodes share more than half, and enough, of their names."""
     same = len(one & other)
     return same >= _ENOUGH and 2 * same > len(one) + len(other) - same
 
@@ -282,7 +283,7 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="leak")
 def driver_missing(seen: Index) -> Iterator[Finding]:
-    """Report a missing driver by its readers, and another robot that has it, once a node."""
+    """Report a missing driver by its readers, with another robot's node that does the same."""
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():

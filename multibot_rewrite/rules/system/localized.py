@@ -11,6 +11,7 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, to_set
+from multibot_rewrite.rules.system.frame_ids import trees_of
 from multibot_rewrite.rules.system.states import ACTIVE
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide
@@ -47,6 +48,25 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
                     **_why_not_localized(seen, tree, node, body, start.name if start else "")._asdict(),
                     robot=seen.robot(node), node=node, names=(body.root, *body.loose),
                 )  # fmt: skip
+    yield from _maps_below_the_map(seen)
+
+
+def _maps_below_the_map(seen: Index) -> Iterator[Finding]:
+    """Yield maps in the frame of odometry, or of a body, that is sent below the map's: they move."""
+    for it in seen.system.heard:
+        type_, senders = sent_on(seen, it.topic)
+        is_map = words.kind_of_data(it.topic, type_) == words.MAP and senders
+        if not is_map or seen.plain_frame(it.frame) not in (_ODOM, *BODY_FRAMES):
+            continue
+        robot = seen.robot(it.topic) or only(robots_of(seen, senders))
+        edges = (one for tree in trees_of(seen, robot) for one in tree.edges)
+        root = root_of(it.frame, {one.child: one.parent for one in edges})
+        if seen.plain_frame(root) in WORLD_FRAMES and _may_be_of(seen, it.frame, robot):
+            yield map_not_joined.finding(
+                f"frame_id of {it.topic} is {it.frame}, which moves in {root}; sent by {senders[0]}",
+                f"set the frame of {senders[0]} to that of the map",
+                level=WARNING, robot=robot, node=senders[0], names=(it.topic,),
+            )  # fmt: skip
 
 
 def _start_pose_end(seen: Index, node: str) -> End | None:
@@ -60,7 +80,9 @@ def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     above: dict[str, str] = {it.child: it.parent for it in tree.edges}
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
-    frames = [it for it in {**above, **dict.fromkeys(above.values())} if _is_of(seen, it, robot)]
+    frames = [
+        it for it in {**above, **dict.fromkeys(above.values())} if _may_be_of(seen, it, robot)
+    ]
     # What hangs on the map and has nothing below it.
     ends = above.keys() - {*above.values()}
     loose = [it for it in frames if it in ends and above[it] in WORLD_FRAMES]
@@ -71,7 +93,7 @@ def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     return _Body(next(iter(roots)), tuple(loose)) if is_one else None
 
 
-def _is_of(seen: Index, frame: str, robot: str) -> bool:
+def _may_be_of(seen: Index, frame: str, robot: str) -> bool:
     return seen.frame_robot(frame) in ("", robot)
 
 

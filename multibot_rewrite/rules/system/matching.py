@@ -11,7 +11,6 @@ from multibot_rewrite.base.conventions import EVERYBODYS, STAMP_SWITCHES, switch
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.knowledge.node_sets import older_node
 from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_set
 from multibot_rewrite.system import words
@@ -88,6 +87,8 @@ def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
 
 def _stale(seen: Index, ends: Iterable[End]) -> str:
     """Say that the type of one of the ends is known of an earlier version of its node only."""
+    from multibot_rewrite.knowledge.node_sets import older_node  # a fault alone needs it
+
     known = ((seen.node[it.node].known, it.type) for it in ends if it.node in seen.node)
     return next(filter(None, (older_node(it, seen.system.release, own) for it, own in known)), "")
 
@@ -176,7 +177,9 @@ def _by_a_switch(some: Set[str], others: Set[str]) -> bool:
 
 @system_rule("MG307", "qos-incompatible", ERROR)
 def qos_never_meets(seen: Index) -> Iterator[Finding]:
-    """Report each subscription and what it lacks, or the one publisher that several lack it of."""
+    """Report each subscription and what it lacks; if several lack it of one publisher, that one.
+
+    Zenoh connects any two (rmw_zenoh design.md)."""
     for (kind, name), ends in seen.by_name.items() if seen.system.environment.rmw != ZENOH else ():
         if kind != TOPIC or name in EVERYBODYS or not _refuses(ends):
             continue
@@ -311,7 +314,7 @@ def _is_latched(ends: Ends) -> bool:
 
 @lru_cache(maxsize=1024)
 def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
-    """Return where two QoS do not connect by the rules of DDS, as (offered, requested)."""
+    """Return where two QoS do not connect by the rules of DDS, as (offered, requested) texts."""
     words = (
         (offered.reliability, requested.reliability, RELIABILITY),
         (offered.durability, requested.durability, DURABILITY),

@@ -91,6 +91,7 @@ def _robots_topics(seen: Index, end: End) -> Sequence[str]:
 
 
 def _outside_reader(seen: Index, end: End, names: Sequence[str]) -> Finding:
+    """Return the finding about a node of no robot that reads what only robots publish."""
     sender = nodes_of(seen.by_name[TOPIC, names[0]].publishers)[0]
     several = f" (or that of another of the {len(names)} robots)" if len(names) > 1 else ""
     lost = f"subscribes to {end.name}, which {seen.nobody} publishes"
@@ -190,7 +191,7 @@ def _published(seen: Index) -> Mapping[str, Sequence[Ends]]:
 
 
 def _possible_names(node: str, name: str) -> Iterator[str]:
-    """Yield what a relative name may have meant: one in a namespace above, or with it written out."""
+    """Yield what a relative name may have meant: in a namespace above, or with it written twice."""
     yield from in_namespaces_above(node, name)
     space = node
     while space := space.rpartition("/")[0]:
@@ -274,7 +275,7 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
             for end in filter(_surely_runs, _each_node(ends.clients)):
-                yield from _unserved(
+                yield from _unserved_findings(
                     seen, end, _served_names(seen).get((end.kind, end.type), _NOBODY)
                 )
 
@@ -312,8 +313,7 @@ def _served_names(seen: Index) -> Mapping[tuple[str, str], _Served]:
     }
 
 
-def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
-    """Yield the finding about a client without a server, with the server that may be meant."""
+def _unserved_findings(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     listed = listed_in_vain(seen, end)
     outside = f"/{last_word(listed)}" if listed and f"/{last_word(listed)}" in seen.nodes else ""
     near = "" if outside else _served_instead(seen, end, served) or in_other_namespace(seen, end)
@@ -355,18 +355,19 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
 
 
 def _calls_in_vain(seen: Index, end: End) -> bool:
-    """Return whether it is the user's own program that calls what nobody serves."""
+    """Return whether the end is of a user's own program, and calls what nobody serves."""
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
-    usual = end.type.startswith(COMMON) or is_from_outside(end.name)
+    # A name below a node that runs is that node's own.
+    below = end.name.rpartition("/")[0] in seen.node
+    common = end.type.startswith(COMMON) and not (below and end.type.startswith("std_srvs/"))
     # Beside other robots it may be one that is not started yet, if it is not its own.
-    own = seen.robot(end.node)
+    own = seen.robot(end.name) if below else seen.robot(end.node)
     others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
     # What all robots call in vain is so by their make; goals that another robot takes are MG322.
     vain, served = _called_by_robots(seen).get((end.kind, seen.plain(end.name)), ((), ()))
     others = others or any(it != own for it in (*vain, *(served if end.kind == ACTION else ())))
-    return (
-        not (seen.in_doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
-    )
+    usual = common or is_from_outside(end.name) or "/_" in end.name
+    return not (seen.in_doubt or theirs or usual or end.code_name or others)
 
 
 @once

@@ -89,7 +89,10 @@ def probable_matches(
     unplanned: Iterable[str],
     ownership: NameOwnership,
 ) -> dict[str, str]:
-    """Return missing node -> the one of ``others`` that it probably is; ``unplanned``: no tools."""
+    """Return missing node -> the running node that it probably is, for nodes that have one.
+
+    ``others`` are all running nodes that are not in the plan, ``unplanned`` those of them that are
+    no tools: only these are compared by similar name."""
     by_robot: dict[str, list[str]] = defaultdict(list)
     for node in unplanned if missing else ():
         by_robot[ownership.robot(node)].append(node)
@@ -277,6 +280,7 @@ def _used_instead(plan: Index, seen: Index, planned: End) -> str:
 
 
 def _same_type_names(plan: Index, seen: Index, planned: End) -> list[str]:
+    """Return the unplanned names that the node has with the planned type."""
     return [it.name for it in _unplanned(plan, seen, planned) if it.type == planned.type != ""]
 
 

@@ -31,7 +31,10 @@ from multibot_rewrite.system.tf_copies import static_topic
 
 
 class Stray(NamedTuple):
-    """An unplanned frame, the planned one it is ``meant`` for, the ``added`` affix; ``bare``: none."""
+    """A frame of a robot that is not planned.
+
+    ``meant`` is the planned frame that it is under another name, or empty; ``added`` what it has in
+    front or behind besides. ``bare``: it lacks the robot's name."""
 
     frame: str
     meant: str
@@ -121,7 +124,10 @@ def _first_word(plan: Index, frame: str, robot: str) -> str:
 def with_more_names(
     plan: Index, seen: Index
 ) -> Iterator[tuple[str, Cause, Robot, tuple[str, ...]]]:
-    """Yield message, cause, robot and planned frames that have the name again, or a prefix."""
+    """Yield message, cause, robot and frames: planned ones with the name again, or a prefix.
+
+    Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in front of
+    parent and child of every transform, as it is."""
     for _, robot, found in _strays_of_robots(plan, seen):
         if names := tuple(it.frame for it in found if it.added):
             added = next(it.added for it in found if it.added)
@@ -219,7 +225,7 @@ def _frames_by_plain(plan: Index) -> Mapping[str, Mapping[str, str]]:
 
 
 def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[Stray]:
-    """Yield frames with their planned meaning; a prefix is in front of all, not of one alone."""
+    """Yield the unplanned frames, each with the planned frame that it probably is."""
     declared, whose = plan.declared[robot], plan.of_frames
     frames, tag = (*declared.frames, *declared.other_frames), whose.tag(robot)
     plain = {

@@ -254,12 +254,12 @@ def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
     missing = [(topic, role) for topic, role in rows if not _is_carried(seen, topic, role)]
     if missing and len(missing) == len(rows):
         running = not all(is_absent(plan, seen, it.name) for it in plan.system.robots)
-        yield from [_not_carried(plan, seen, "", missing, WARNING)] * running
+        yield from [_not_bridged_finding(plan, seen, "", missing, WARNING)] * running
         return
     by_robot = lists_by_key((plan.robot(topic.name), (topic, role)) for topic, role in missing)
     for robot, own in by_robot.items():
         if not (robot and is_absent(plan, seen, robot)):
-            yield _not_carried(plan, seen, robot, own, ERROR)
+            yield _not_bridged_finding(plan, seen, robot, own, ERROR)
 
 
 def _is_carried(seen: Index, topic: Topic, role: str) -> bool:
@@ -269,10 +269,9 @@ def _is_carried(seen: Index, topic: Topic, role: str) -> bool:
     return any(topic.type in ("", it.type) for it in ends)
 
 
-def _not_carried(
+def _not_bridged_finding(
     plan: Index, seen: Index, robot: str, rows: Sequence[tuple[Topic, str]], level: str
 ) -> Finding:
-    """Return the finding about topics that no bridge brings."""
     topic, role = rows[0]
     more = f"; so it is with {len(rows) - 1} more of the bridge" if len(rows) > 1 else ""
     type_ = f" with the type {topic.type}" if topic.type else ""

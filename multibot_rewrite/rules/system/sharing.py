@@ -14,7 +14,7 @@ from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, names_another
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import NO_NAMESPACE, Ends, Index, at_work, nodes_of, robots_of
-from multibot_rewrite.system.records import COMPUTER, PUBLISHES, SUBSCRIBES, Address, End
+from multibot_rewrite.system.records import COMPUTER, PUBLISHES, SUBSCRIBES, TOPIC, Address, End
 from multibot_rewrite.system.words import is_viewer, last_word
 
 
@@ -122,8 +122,16 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
             message = f"publishes on {ends.name} as {other} does"
             cause = "joint_state_publisher is for a robot without hardware or simulator: stop it"
             yield joint_states_twice.finding(
-                message, cause, robot=seen.robot(ends.name), node=made_up[0], names=(ends.name,)
-            )
+                message, cause, level=ERROR if is_planned_with(seen, ends.name) else WARNING,
+                robot=seen.robot(ends.name), node=made_up[0], names=(ends.name,),
+            )  # fmt: skip
+
+
+def is_planned_with(seen: Index, topic: str) -> bool:
+    """Return whether joint states come to MoveIt, which plans as if an unknown joint were at its
+    default (planning_scene_monitor.cpp updateSceneWithCurrentState)."""
+    readers = nodes_of(seen.ends_at(TOPIC, topic).subscribers)
+    return any(last_word(it).startswith("move_group") for it in readers)
 
 
 @system_rule("MG325", "sensor-twice", ERROR, meant=(PUBLISHES,))

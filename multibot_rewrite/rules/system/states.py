@@ -39,7 +39,7 @@ ACTIVE, INACTIVE = "active", "--inactive"
 
 @system_rule("MG511", "not-active", ERROR)
 def not_active(seen: Index) -> Iterator[Finding]:
-    """Report the nodes of a robot in one state with one manager, if that state is not planned."""
+    """Report nodes in another state than planned, or not active, those of one manager as one."""
     planned = seen.expected.system.nodes if seen.expected else ()
     states = {it.name: it.lifecycle for it in planned if it.lifecycle}
     found: dict[tuple[str, str, str, str], list[str]] = defaultdict(list)
@@ -219,7 +219,9 @@ _WORDS = {JOINT: ("plans for", "", "no controller of MoveIt moves")}
 
 
 class Missing(NamedTuple):
-    """A claim that no hardware exports; ``near``: what is ``meant``, or another one of its joint."""
+    """What a controller claims at one place and no hardware exports.
+
+    ``near`` is what may be ``meant``, or another interface of the same joint, sensor or gpio."""
 
     claims: tuple[Interface, ...]
     near: Interface | None

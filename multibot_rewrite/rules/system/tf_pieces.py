@@ -121,7 +121,7 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
 
 
 def _near_frames(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
-    """Return a function: the frame of its robot or of none that another may be meant for, or ""."""
+    """Return a function: of the robot's frames and those of none the one nearly called so, or ""."""
     own = sets_by_key((seen.frame_robot(it), it) for it in frames)
     left: dict[str, int] = defaultdict(lambda: _COMPARED)
 
@@ -223,7 +223,7 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
 
 
 def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
-    """Return whether a tree in pieces is so for certain: nothing outside the launch file joins it."""
+    """Return whether a tree is in pieces for certain: nothing outside the launch file may join it."""
     loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
     own = (it for it in seen.nodes if seen.robot(it) == found.robot)
     misspelt = {(it.robot, it.names) for it in _misspelled(seen)}

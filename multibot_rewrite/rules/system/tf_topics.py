@@ -28,7 +28,7 @@ _REMAP = "/tf:=tf and /tf_static:=tf_static"
 
 @system_rule("MG405", "tf-on-two-topics", ERROR, drawn="leak")
 def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
-    """Report nodes on another tf topic than their robot's, unless it is meant or no tf."""
+    """Report nodes that send or hear tf on another topic than their robot's, unless that is meant."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in _called_tf(seen):
@@ -80,7 +80,7 @@ def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
 def _frames_of_another(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
-    """Report one robot's frames on another one's topic; without a plan of an unknown sender."""
+    """Report a robot's frames on another one's topic; without a plan only of unknown senders."""
     for tree in _called_tf(seen):
         home = home_of(seen.expected, tree) if seen.expected else ()
         owners = home or [it for it in (seen.robot(tree.topic),) if it]
@@ -108,7 +108,7 @@ def _frames_of_another(
 
 
 def _is_of_its_tree(seen: Index, _: Tree, edge: Edge) -> bool:
-    """Return whether it is between frames of one robot, or what that sends by the plan."""
+    """Return whether it is between frames of one robot, or what a node sends by the plan."""
     one = seen.frame_robot(edge.child) == seen.frame_robot(edge.parent)
     return one or (edge.parent, edge.child) in seen.senders
 
@@ -138,7 +138,7 @@ def _is_relayed(seen: Index, tree: Tree, robot: str) -> bool:
 def _has_names_of(
     seen: Index, tree: Tree, owners: Sequence[str], robot: str, edges: Sequence[Edge]
 ) -> bool:
-    """Return whether the topic's robot lacks frames and has those of another: the finding then."""
+    """Return whether a topic's own robot lacks frames, as its nodes have the names of another one."""
     plan, children = seen.expected, by_child(seen).get(seen.home.get(robot, ""), {})
     if not plan or not seen.nodes or any(it.child not in children for it in edges):
         return False
@@ -149,7 +149,7 @@ def _has_names_of(
 def _frames_on_foreign_topic(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
-    """Yield a robot's frames on a topic of none of its nodes, from a node of no robot."""
+    """Yield a robot's frames on a topic of none of its nodes, sent by a node of no robot."""
     level = WARNING if incomplete(seen.system) else ERROR
     trees = {it.topic: it for it in seen.trees}
     elsewhere = taken_elsewhere(seen.expected) if seen.expected else ()

@@ -137,6 +137,7 @@ def _may_collide(seen: Index, tree: Tree) -> bool:
 
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
+    """Return the frames of a tree without a robot's name, those of several robots first."""
     met = (it.parent for it in tree.edges if _is_of_several(seen, it))
     frames = unique((*met, *(edge.child for edge in tree.edges)))
     return [it for it in frames if not seen.frame_robot(it) and it not in WORLD_FRAMES]
@@ -342,7 +343,7 @@ def _subscriptions(seen: Index, node: str) -> Sequence[End]:
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:
-    """Return whether a node can send a transform: a drive sends nothing below the map."""
+    """Return whether a node can send a transform, by its name and what it reads."""
     above, word = seen.plain_frame(edge.parent), last_word(node)
     if word.startswith(_STATE_PUBLISHER):
         return above not in SENT_FRAMES

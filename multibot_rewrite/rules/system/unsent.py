@@ -15,8 +15,9 @@ from multibot_rewrite.rules.declaration import last_place, system_rule
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
 from multibot_rewrite.rules.system.instead import is_needed, meant
 from multibot_rewrite.rules.system.likes import nodes_of_each
+from multibot_rewrite.rules.system.localized import map_not_joined
 from multibot_rewrite.rules.system.names import server_names_miss, topic_names_miss
-from multibot_rewrite.rules.system.tf_pieces import is_of_description
+from multibot_rewrite.rules.system.tf_pieces import is_of_description, tf_tree_in_pieces
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system.index import TF, Index, ends_of, once
 from multibot_rewrite.system.records import (
@@ -65,7 +66,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 
 
 def _is_of_like_robot(seen: Index, name: str, robot: str) -> bool:
-    """Return whether a name is of a robot that is alike but for what sends that name."""
+    """Return whether a name is of another robot that is alike except for the name's sender."""
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()
@@ -92,6 +93,20 @@ def _names_without_robot(seen: Index) -> Mapping[str, Sequence[str]]:
         for (_, name), ends in reversed([*seen.by_name.items()])
         if ends.publishers or ends.servers
     )
+
+
+def is_for_driver(seen: Index, it: Finding) -> bool:
+    """Return whether the driver of a real robot may mend it: it places the link at which the tree is in
+    pieces, which no other node's parameters name, and sends what a localizer waits for and a usual
+    frame of the robot."""
+    if it.code == map_not_joined.code:
+        # With another name, a frame below the map is the wrong one.
+        return len(it.names) == 1
+    if it.code == frame_not_sent.code:
+        return seen.plain_frame(it.names[0]) in USUAL_FRAMES
+    edges = (one for one in seen.system.edges if not is_of_description(seen, one))
+    named = {frame for edge in edges for frame in (edge.parent, edge.child)}
+    return it.code == tf_tree_in_pieces.code and not (it.node or named >= {*it.names})
 
 
 def no_longer_sent(end: End) -> Finding:
@@ -151,7 +166,7 @@ def _usual_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Find
     hears = any(end.type == TF and end.role == SUBSCRIBES for end in seen.by_node.get(it.node, ()))
     if sender is None and usual and edges and not seen.in_doubt and hears:
         message = f"reads frame {it.frame}, but no known node sends it"
-        return _finding(seen, it, message, "name the node or node set that sends it", NOTE)
+        return _lookup_finding(seen, it, message, "name the node or node set that sends it", NOTE)
     if sender is None:
         return _unknown_frame_finding(seen, it, edges)
     place = f" ({sender.place})" if sender.place != NOWHERE else ""
@@ -160,7 +175,9 @@ def _usual_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Find
     hint = f"{sends}; use a frame that is sent, or name the node that does"
     # A map often comes from a node that is started apart.
     level = NOTE if plain == "map" else WARNING
-    return _finding(seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level)
+    return _lookup_finding(
+        seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level
+    )
 
 
 def _unknown_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
@@ -169,7 +186,7 @@ def _unknown_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Fi
     if not near and (seen.system.environment.settled != QUIET or not edges):
         return None
     hint = f"did you mean {near}?" if near else "send it, or use a frame that is sent"
-    return _finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
+    return _lookup_finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
 
 
 def _sent_transform(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
@@ -195,20 +212,24 @@ def _state_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | 
         root = root_of(it.frame, above)
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.parent}"
         hint = f"start what sends {it.parent} -> {root}: localization, or odometry"
-        return _finding(seen, it, f"{message}: the tree begins with {root}", hint, WARNING)
+        return _lookup_finding(seen, it, f"{message}: the tree begins with {root}", hint, WARNING)
     frames = frames_in(edges)
     if near := "" if it.frame in frames else nearest(it.frame, sorted(frames), MISTYPED):
         message = f"reads {it.parent} -> {it.frame}, and nothing sends {it.frame}"
-        return _finding(seen, it, message, f"did you mean {near}?", WARNING)
+        return _lookup_finding(seen, it, message, f"did you mean {near}?", WARNING)
     message = (
         f"has the transform {it.parent} -> {it.frame} as its state, but no known node sends it"
     )
     hint = "name the node that sends it, or make the virtual joint fixed"
-    return _finding(seen, it, message, hint, NOTE)
+    return _lookup_finding(seen, it, message, hint, NOTE)
 
 
-def _finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
+def _lookup_finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
     return frame_not_sent.finding(
         message, hint, level=level,
         robot=seen.robot(it.node), node=it.node, names=(it.frame,), **last_place([it]),
     )  # fmt: skip
+
+
+# What is missing where the driver of a real robot, which no file names, may send it.
+FOR_DRIVERS = (tf_tree_in_pieces.code, map_not_joined.code, frame_not_sent.code)

@@ -82,7 +82,6 @@ SAWYER = (
     "<robotNamespace>/a</robotNamespace></plugin></gazebo>"
 )
 KOBUKI = '<gazebo><plugin name="k" filename="libgazebo_ros_kobuki.so"/></gazebo>'
-EYE = '<gazebo reference="base"><sensor name="s" type="rgbd_camera"><camera/></sensor></gazebo>'
 
 
 class Followed(NamedTuple):
@@ -143,7 +142,6 @@ ROWS = (
     followed(
         KOBUKI, "both humble", "MG402", "allow it with --shared FRAME", shared_frames=["odom"]
     ),
-    followed(EYE, "tf-per-robot jazzy", "MB437", "--layout both", layout="both"),
     followed(SENSORS, "postfix jazzy", "MB416", "--world-systems leave", world_systems="leave"),
     followed(
         CONTROL.format(""), "postfix humble", "MB426", "--topics namespace", topics="namespace"

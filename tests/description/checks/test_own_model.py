@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all
+from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all, strip
 from multibot_rewrite.base.naming import LAYOUTS
 
 BODY = """<link name="base"/><link name="w"/><joint name="j" type="continuous">
@@ -36,21 +36,37 @@ CONTAIN = """<gazebo><plugin name="c" filename="libContainPlugin.so"><entity>{}<
 
 @pytest.mark.parametrize("plugin", [CONTAIN, WAVES], ids=["contain", "waves"])
 @pytest.mark.parametrize(
-    ("entity", "layout", "is_shared"),
-    [
-        ("r::base", "tf-per-robot", True),
-        ("r::base", "postfix", False),
-        ("other::base", "tf-per-robot", False),
-        ("base", "tf-per-robot", False),
-    ],
+    ("entity", "model"),
+    [("r::base", "r_robot1"), ("other::base", "r"), ("base", "r")],
 )
 def test_the_own_model_in_front_of_a_link_is_another_one_for_each_robot(
-    entity: str, layout: str, is_shared: bool, plugin: str
+    entity: str, model: str, plugin: str
 ) -> None:
     """ContainPlugin.cc:100 looks it up in the world, where each robot has a name of its own;
     asv_wave_sim's Hydrodynamics.cc, IsEnabled compares it with the scoped name of each link."""
-    made = rewrite(robot(plugin.format(entity)), "robot1", layout=layout)
-    assert ("1 name looked up in the whole world" in made.not_verified) == is_shared
+    made = rewrite(robot(plugin.format(entity)), "robot1", layout="tf-per-robot")
+    assert "1 name looked up in the whole world" not in made.not_verified
+    assert f'<robot name="{model}">' in made.text
+    assert f">{entity.replace('r::', f'{model}::', 1)}<" in made.text.replace("other_", "")
+
+
+OWN = [
+    JOINT.format("r"),
+    CONTAIN.format("r::base"),
+    """<gazebo><plugin filename="gz-sim-triggered-publisher-system"
+ name="gz::sim::systems::TriggeredPublisher"><input type="a" topic="/model/r/odometry"/>
+<output type="b" topic="/x"/></plugin></gazebo>""",
+]
+
+
+@pytest.mark.parametrize("layout", [it.name for it in LAYOUTS])
+@pytest.mark.parametrize("text", OWN, ids=["child_model", "entity", "topic"])
+def test_a_value_with_the_own_model_has_the_name_of_the_model(text: str, layout: str) -> None:
+    """Both are what the spawner gives; the undo finds them without the source."""
+    made = rewrite(robot(text), "robot1", layout=layout)
+    model = "robot1_r" if layout == "frame-prefix" else "r_robot1"
+    assert f'<robot name="{model}">' in made.text and made.text.count(model) == 2
+    assert strip(made.data, "robot1", layout=layout) == robot(text).encode()
 
 
 HAND = """<gazebo><plugin name="h" filename="libgazebo_ros_hand_of_god.so"><ros/>
@@ -81,13 +97,15 @@ CONTROL = """<ros2_control name="a" type="system"><hardware>
         robot(PLUGIN),
         robot("", BODY.replace('<link name="w"/>', f'<link name="w">{PLUGIN}</link>')),
         robot(CONTROL.format(PLUGIN)),
+        robot('<gazebo><plugin name="gazebo_ros_control"/></gazebo>'),
     ],
-    ids=["robot", "link", "ros2_control"],
+    ids=["robot", "link", "ros2_control", "no library"],
 )
 def test_a_plugin_outside_of_gazebo_is_reported(text: str, layout: str) -> None:
     (one, _) = rewrite_all(text, ["robot1", "robot2"], layout=layout)
     found = [it for it in one.findings if it.code == "MB112"]
-    assert len(found) == 1 and "<gazebo>" in found[0].hint
+    assert len(found) == 1 and ("filename" if "gazebo_ros" in text else "<gazebo>") in found[0].hint
+    assert "plugin not known" not in " ".join(one.not_verified)
     assert "multibot robot1" not in one.text
     inside = rewrite(robot(f"<gazebo>{PLUGIN}</gazebo>"), "robot1", layout=layout)
     assert "MB112" not in {it.code for it in inside.findings}

@@ -21,6 +21,8 @@ DRIVE = """<robot name="r"><link name="a"/><gazebo>
 
 
 INCLUDED = "<gazebo><include><uri>model://x</uri></include></gazebo>"
+BELOW_MODEL = """<robot name="r"><link name="a"/><gazebo>
+<plugin name="l" filename="librotors_gazebo_lidar_plugin.so"/></gazebo></robot>"""
 NO_LINK = ("1 robot without a link",)
 
 
@@ -91,11 +93,11 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
     [
         (LIDAR.format("scan"), ()),
         (LIDAR.format("{name}/scan"), ("1 topic shared by all robots",)),
-        # gz-sim Contact.cc and Classic's ContactSensor.cc read the topic in <contact> alone.
-        (
-            LIDAR.format("{name}/scan").replace("gpu_lidar", "contact"),
-            ("1 description the same for all robots",),
-        ),
+        # gz-sim Contact.cc and Classic's ContactSensor.cc read the topic in <contact> alone: without
+        # one it is below the model, whose name the spawner gives.
+        (LIDAR.format("{name}/scan").replace("gpu_lidar", "contact"), ()),
+        (LIDAR.format("x").replace("<topic>x</topic>", ""), ()),
+        (BELOW_MODEL, ()),
         # A <link> of a plugin is no link of the robot.
         (LIDAR.format("x").replace('<link name="a"/>', "<own><link>a</link></own>"), NO_LINK),
         # Its links are those of the model that it includes (x500 of PX4).

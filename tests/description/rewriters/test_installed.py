@@ -17,7 +17,7 @@ from description_calls import NEWEST_LTS, builtin_tree, load_definitions
 from paths import FIXTURES
 
 from multibot_rewrite import DefinitionsError, rewrite, strip
-from multibot_rewrite.description.rewriters.plugin_definitions.installed import (
+from multibot_rewrite.description.rewriters.installed import (
     advice,
     definitions_files,
     installed,

@@ -165,3 +165,29 @@ def test_an_argument_in_the_old_form_is_a_rule() -> None:
     made = rewrite(source, "robot1", layout="postfix")
     assert rule_texts(made.text) == ["gazebo_ros_force:=push/robot1"]
     assert made.not_verified == ()
+
+
+@pytest.mark.parametrize(
+    ("distro", "inside", "rule", "added"),
+    [
+        ("humble", "", "/base/cmd_vel:=/cmd_vel", ["base/cmd_vel:=cmd_vel"]),
+        ("humble", "<namespace>a</namespace>", "/a/base/odom:=/a/odom", ["base/odom:=odom"]),
+        ("humble", "<namespace>a</namespace>", "/a/base/odom:=/odom", []),
+        ("humble", "", "/base/cmd_vel:=cmd_vel", []),
+        ("humble", "", "/tf:=/base/tf", []),
+        ("jazzy", "", "/base/cmd_vel:=/cmd_vel", []),
+    ],
+)
+def test_a_rule_of_a_whole_process_is_the_same_for_all_robots(
+    distro: str, inside: str, rule: str, added: list[str]
+) -> None:
+    """Of two robots in one Gazebo the first one's arguments are used on Humble, where rclcpp::init is
+    for the context (gz_ros2_control_plugin.cpp); since Jazzy each manager has its own."""
+    control = 'filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin"'
+    source = ROBOT.format(f"<plugin {control}><ros>{inside}{rules(rule)}</ros></plugin>")
+    for robot in ("robot1", "robot2"):
+        made = rewrite(source, robot, layout="frames-per-robot", distro=distro)
+        assert rule_texts(made.text)[:-1] == added
+        told = {it.code for it in made.findings}
+        assert ("MB426" in told) == (distro == "humble" and not added and ":=/" in rule)
+        assert strip(made.text, robot, layout="frames-per-robot", distro=distro) == source.encode()

@@ -22,9 +22,10 @@ from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.knowledge.node_sets import load_node_set, load_nodes
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.transforms import sent_by
-from multibot_rewrite.planning.ways import HOST, deliveries, started
+from multibot_rewrite.planning.ways import deliveries, started
 from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.evidence.nodes import nodes_of
+from multibot_rewrite.system.records import HOST
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 ARM = fixture_text("controllers_arm.urdf")

@@ -60,7 +60,6 @@ def as_junit(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _totals(findings: Sequence[Finding], report: Report) -> dict[str, str]:
-    """Return the attributes of a suite: the numbers of tests, failures and skipped ones."""
     clean = set(report.files) - {file_of(it, report) for it in findings}
     failures = sum(it.level in (ERROR, WARNING) for it in findings)
     skipped = sum(it.level == INCONCLUSIVE for it in findings)

@@ -106,10 +106,10 @@ def calls(finding: Finding) -> Iterator[MacroCall]:
         yield MacroCall(parts["file"], int(parts["line"]), parts["macro"])
 
 
-def via(finding: Finding, spelled: Callable[[str], str]) -> Iterator[str]:
-    """Yield a line for each macro call; ``spelled`` formats its path."""
+def via(finding: Finding, shown: Callable[[str], str]) -> Iterator[str]:
+    """Yield a line for each macro call; ``shown`` formats its path."""
     for call in calls(finding):
-        yield one_line(f"via {spelled(call.file)}:{call.line}: {call.macro}")
+        yield one_line(f"via {shown(call.file)}:{call.line}: {call.macro}")
 
 
 def counts(findings: Iterable[Finding]) -> dict[str, int]:

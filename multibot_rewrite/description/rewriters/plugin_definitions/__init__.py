@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from multibot_rewrite.base.bounded import read_text
 from multibot_rewrite.base.model import DefinitionsError
+from multibot_rewrite.description.rewriters.installed import advice, installed
 from multibot_rewrite.description.rewriters.plugin_definitions.grammar import (
     FORMS,
     KINDS,
@@ -17,7 +18,6 @@ from multibot_rewrite.description.rewriters.plugin_definitions.grammar import (
     split_path,
     split_step,
 )
-from multibot_rewrite.description.rewriters.plugin_definitions.installed import advice, installed
 from multibot_rewrite.description.rewriters.plugin_definitions.library import Definitions
 from multibot_rewrite.description.rewriters.plugin_definitions.values import Value, Values
 

@@ -8,7 +8,6 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import is_tool_word
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.fitting.node_topics import (
     COMMANDS,
     CommandEnd,
@@ -20,7 +19,6 @@ from multibot_rewrite.fleet.robots.fitting.node_topics import (
     usual_values,
     with_rules,
 )
-from multibot_rewrite.fleet.robots.fitting.sensors import bridge_rows_of
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
 from multibot_rewrite.knowledge.records import TWIST_MUX, Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Run
@@ -72,11 +70,12 @@ def of_one_type(
     free: Collection[str],
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
-    spec: RobotSpec,
+    rows: Iterable[str],
 ) -> list[NodeFacts]:
-    """Return the nodes, with commands of one type as far as the build may choose it."""
+    """Return the nodes, with commands of one type as far as the build may choose it; ``rows`` are the
+    types of the robot's own bridge."""
     choices = {it.node.name: it for it in _choices(nodes, own, free, given, known)}
-    wanted = _wanted_type(tuple(choices.values()), free, nodes, spec)
+    wanted = _wanted_type(tuple(choices.values()), free, nodes, rows)
     made = []
     for node in nodes:
         choice = choices.get(node.name)
@@ -139,12 +138,14 @@ def _condition_parameters(ends: Iterable[Endpoint]) -> set[str]:
 
 
 def _wanted_type(
-    choices: Sequence[_Choice], free: Collection[str], nodes: Iterable[NodeFacts], spec: RobotSpec
+    choices: Sequence[_Choice],
+    free: Collection[str],
+    nodes: Iterable[NodeFacts],
+    rows: Iterable[str],
 ) -> str:
     """Return the type of the robot's commands, by files, bridge or nodes; else the plain one."""
     topics = {topic_of(it.node, end) for it in choices for end in _ends_of_either_type(it.node)}
     said = [it.type for it in choices if it.is_set]
-    rows = [it.end.type for it in bridge_rows_of(spec) if it.end.role == SUBSCRIBES]
     heard = [
         end.type
         for node in nodes

@@ -25,9 +25,11 @@ from multibot_rewrite.fleet.robots.fitting.commands import (
 )
 from multibot_rewrite.fleet.robots.fitting.node_topics import controllers, plugins, usual_values
 from multibot_rewrite.fleet.robots.fitting.sensors import (
+    alone,
     bridge_rows_of,
     bridged_commands,
     by_sensor,
+    command_rows,
     hearing_sensors,
     offered_topics,
     with_odometry,
@@ -144,11 +146,13 @@ NO_FRAMES: Frames = {}
 
 
 def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
-    """Return the usual frames that the robot lacks, each with its drive's frame for that place."""
-    placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), None)
+    """Return the usual frames that the robot lacks, each with its drive's frame for that place, or
+    with the usual link that it has."""
+    links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
+    own = next((edge_of(ODOM, it) for it in BODY_FRAMES if it in links), None)
+    placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), own)
     if placed is None:
         return NO_FRAMES
-    links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
     given = {frame.default for it in nodes for frame in it.frames if frame.given}
     has = links | given | {frame for it in sent for frame in it[:2]}
     wanted = {**dict.fromkeys(BODY_FRAMES, placed.child), ODOM: placed.parent}
@@ -249,7 +253,8 @@ def fitted(
         led = driving(settled, muxes, has.bridged)
         settled = [*through_a_mux(led, own, usual, known[TWIST_MUX])]
     routed = by_way_of_relays(driving(settled, own, has.bridged), own)
-    typed = of_one_type(routed, own, free, given, known, spec)
+    rows = [it.end.type for it in command_rows(spec) if alone(it.end.name) in has.bridged]
+    typed = of_one_type(routed, own, free, given, known, rows)
     return tuple(without_second_senders(typed, free, has.sent))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
+from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.steps.collect import collect
@@ -24,6 +25,7 @@ from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.producers.ends import BridgeRow, bridge_rows
 from multibot_rewrite.producers.evidence.filling import lookup
+from multibot_rewrite.related_files.bridge import GZ_MODEL
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import ODOMETRY
 
@@ -68,19 +70,34 @@ def bridge_rows_of(spec: RobotSpec) -> Iterator[BridgeRow]:
 
 
 def bridged_commands(member: Member, spec: RobotSpec) -> dict[str, str]:
-    """Return the types of commands that go to the simulator, by topic; bridge files come first."""
-    rows = [it for it in bridge_rows_of(spec) if it.end.role == SUBSCRIBES]
+    """Return the types of commands that go to the simulator, by the topics of the robot's own bridge
+    files; then those that the description names besides, for which the build has rows. Where it has a
+    drive, other rows with velocities are for something else."""
+    rows = command_rows(spec)
     if spec.simulator == REAL or not rows:
         return {}
-    own = {_without_namespace(it.inside): (it.end.name, it.end.type) for it in rows}
-    made, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)
-    named = (it for it in made if it.direction == DIRECTIONS["out"] and not it.is_free)
-    every = own | {_without_namespace(it.gz): (it.ros, it.ros_type) for it in named} | own
-    return {_without_namespace(name): type_ for name, type_ in every.values() if type_ in COMMANDS}
+    own = {alone(it.inside): (it.end.name, it.end.type) for it in rows}
+    made, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING, {"": "robot"})
+    led = [it for it in made if it.direction == DIRECTIONS["out"] and it.ros_type in COMMANDS]
+    named = {alone(it.gz): (it.ros, it.ros_type) for it in led if not it.is_free}
+    drives = {alone(it.gz) for it in led} or own.keys()
+    every = [it for inside, it in (own | named | own).items() if inside in drives]
+    return {alone(name): type_ for name, type_ in every if type_ in COMMANDS}
 
 
-def _without_namespace(name: str) -> str:
-    return name.rpartition("<namespace>/")[2].strip("/")
+def command_rows(spec: RobotSpec) -> list[BridgeRow]:
+    """Return the rows of the robot's own bridge files that bring something to the simulator, without
+    those for a model of another robot."""
+    rows = [it for it in bridge_rows_of(spec) if it.end.role in ("", SUBSCRIBES)]
+    models = [found["model"] for it in rows if (found := GZ_MODEL.fullmatch(it.inside))]
+    others = {it for it in models if it != models[0] and not PLACEHOLDER.search(it)}
+    return [it for it in rows if others.isdisjoint(it.inside.split("/"))]
+
+
+def alone(name: str) -> str:
+    """Return a topic without the placeholder of the robot, or of a model: ``model/cmd_vel``."""
+    found = GZ_MODEL.fullmatch(name)
+    return f"model{found['rest']}" if found else name.rpartition("<namespace>/")[2].strip("/")
 
 
 def wanted(node: NodeFacts, end: Endpoint) -> str:

@@ -40,7 +40,7 @@ def _get_logger(name: str | None = None) -> Any:
 
 @cache
 def contents() -> Mapping[str, dict[str, Any]]:
-    """Return the modules, each with its contents."""
+    """Return the modules of the stand-in, each with the names that it has."""
     known = {key: it for room in _ROOMS for key, it in vars(room).items()}
     known["get_logger"] = _get_logger
     found = {

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Launch files in XML and YAML -> the actions that they stand for, of the stand-in for launch; and a
-text with ``$(name value ...)`` in it -> its parts.
+"""Launch files in XML and YAML -> actions; a text with ``$(name value ...)`` in it -> its parts.
 
 Source: launch and launch_ros jazzy, frontend/expose.py, ``parse`` of each action, of each substitution
 and of descriptions/composable_node.py; share/launch/frontend/grammar.lark,
@@ -102,9 +101,11 @@ _KINDS = {"yaml", *_TYPES, *(f"list_of_{it}" for it in _TYPES)}
 
 
 class Form(NamedTuple):
-    """The class that a tag stands for, in its module: ``values`` and ``below`` have the argument that
-    each attribute, or the entities of each tag below it, becomes, and how it is read. ``needs`` are
-    attributes that have to be there; all other entities below become ``actions``."""
+    """The class that a tag stands for, in its module, and what becomes of the entity.
+
+    ``values`` and ``below`` have the argument that each attribute, or the entities of each tag
+    below it, becomes, and how it is read. ``needs`` are attributes that have to be there; all other
+    entities below become ``actions``."""
 
     module: str
     name: str
@@ -128,13 +129,13 @@ def _action_of(entity: Entity) -> Any:
     if form is None:
         return _unread(entity.tag)
     condition = _condition(entity)
-    made = _built(entity, form)
+    made = _action_by_form(entity, form)
     if condition is not None:
         made.condition = condition
     return made
 
 
-def _built(entity: Entity, form: Form) -> Any:
+def _action_by_form(entity: Entity, form: Form) -> Any:
     for it in form.needs:
         entity.values[it] = entity.take(it)
     named = {key: it for key, it in form.values.items() if key in entity.values}
@@ -193,14 +194,14 @@ def _command_words(line: str) -> list[Any]:
     return [it for it in found if it]
 
 
-def _pairs(first: str, second: str) -> Callable[[list[Entity]], list[Any]]:
+def _pair_reader(first: str, second: str) -> Callable[[list[Entity]], list[Any]]:
     def read(entities: list[Entity]) -> list[Any]:
-        return [tuple(_substitutions(it) for it in _taken(one, first, second)) for one in entities]
+        return [tuple(_substitutions(it) for it in _take(one, first, second)) for one in entities]
 
     return read
 
 
-def _taken(entity: Entity, *names: str) -> list[Any]:
+def _take(entity: Entity, *names: str) -> list[Any]:
     found = [entity.take(it) for it in names]
     entity.check()
     return found
@@ -210,7 +211,7 @@ def _parameter(entity: Entity) -> Any:
     if "from" not in entity.values:
         return dict([_named_value(entity)])
     allowed = entity.values.pop("allow_substs", False)
-    (path,) = _taken(entity, "from")
+    (path,) = _take(entity, "from")
     files = import_module("launch_ros.descriptions")
     allowed = _substitutions(allowed) if isinstance(allowed, str) else allowed
     return files.ParameterFile(_substitutions(path), allow_substs=allowed)
@@ -225,7 +226,7 @@ def _named_value(entity: Entity) -> tuple[Any, Any]:
     kind = entity.values.pop("type", "yaml")
     if kind not in _KINDS:
         raise ValueError(f"Got invalid type identifier {kind!r}")
-    (value,) = _taken(entity, "value")
+    (value,) = _take(entity, "value")
     made = import_module("launch_ros.descriptions").ParameterValue
     return name, made(_typed(value, kind), value_type=_TYPES.get(kind))
 
@@ -243,7 +244,7 @@ def _typed(value: Any, kind: str) -> Any:
 
 def _component(entity: Entity) -> Any:
     condition = _condition(entity)
-    made = _built(entity, forms()["composable_node"])
+    made = _action_by_form(entity, forms()["composable_node"])
     made._condition = condition
     return made
 
@@ -258,14 +259,14 @@ _READERS: Mapping[str, Reader] = {
     **{"": _substitutions, "text": str, "truth": _truth, "words": _command_words},
     "end": lambda _: [import_module("launch.actions").Shutdown()],
 }
-_named = _pairs("name", "value")
+_named = _pair_reader("name", "value")
 _BELOW: Mapping[str, Reader] = {
     **dict.fromkeys(("arg", "env", "extra_arg"), _named),
-    "choice": lambda found: [str(*_taken(it, "value")) for it in found],
+    "choice": lambda found: [str(*_take(it, "value")) for it in found],
     "composable_node": lambda found: [_component(it) for it in found],
     "keep": lambda found: {tuple(name): value for name, value in _named(found)},
     "param": lambda found: [_parameter(it) for it in found],
-    "remap": _pairs("from", "to"),
+    "remap": _pair_reader("from", "to"),
 }
 
 

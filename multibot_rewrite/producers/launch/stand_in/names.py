@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be imported of launch and launch_ros, and what launch files in XML and YAML are made of:
-``launch.yaml``."""
+"""What launch files can import of launch and launch_ros, or have in XML and YAML: ``launch.yaml``."""
 
 from collections.abc import Mapping
 from functools import cache
@@ -10,10 +9,11 @@ from multibot_rewrite.base.bounded import load_own_yaml
 
 
 class Names(NamedTuple):
-    """The names in each module, those of which only the name is known, and modules inside of packages;
-    packages that make parameters alone;
-    actions that are executed and those that are passed; the words of each element, with ``groups`` of
-    them; the class of each substitution."""
+    """The names in each module, and those of which only the name is known (``not_read``).
+
+    ``inside`` are modules of packages; ``parameters`` packages that make parameters alone;
+    ``executed`` and ``passed`` actions; ``elements`` have words, with ``groups`` of them;
+    ``substitutions`` classes."""
 
     read: Mapping[str, str]
     not_read: Mapping[str, str]

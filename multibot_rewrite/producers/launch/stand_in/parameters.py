@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters as a launch file gives them to a node, with the types that launch_ros makes of them; and
-what launch files take from nav2_common: parameter files that are made of others.
+"""Parameters with the types of launch_ros; nav2_common's parameter files that are made of others.
 
 Source: launch_ros jazzy, utilities/evaluate_parameters.py, parameter_descriptions.py; nav2_common
 humble to main, launch/rewritten_yaml.py, replace_string.py, has_node_params.py,
@@ -105,10 +104,10 @@ class ParameterFile:
 
 def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tuple[Any, ...]:
     """Return files as paths, values by name; raises TypeError for a value that is neither."""
-    return tuple(_evaluated(context, it) for it in parameters)
+    return tuple(_evaluate_one(context, it) for it in parameters)
 
 
-def _evaluated(context: LaunchContext, given: Any) -> Any:
+def _evaluate_one(context: LaunchContext, given: Any) -> Any:
     if isinstance(given, Mapping):
         named = flat(given).items()
         return {text_of(context, key): value_of(context, it, key) for key, it in named}
@@ -119,16 +118,16 @@ def _evaluated(context: LaunchContext, given: Any) -> Any:
 
 def flat(given: Any) -> Any:
     """Return parameters with dotted names; files and unknown values stay as they are."""
-    return dict(_flat(given, ())) if isinstance(given, Mapping) else given
+    return dict(_flat_items(given, ())) if isinstance(given, Mapping) else given
 
 
-def _flat(
+def _flat_items(
     given: Mapping[Any, Any], above: tuple[Any, ...]
 ) -> Iterator[tuple[tuple[Any, ...], Any]]:
     for key, value in given.items():
         name = (*above, *([key] if isinstance(key, str) or hasattr(key, "perform") else key))
         if isinstance(value, Mapping):
-            yield from _flat(value, (*name, "."))
+            yield from _flat_items(value, (*name, "."))
         elif isinstance(value, (*_PLAIN, list, tuple)) or any(
             hasattr(value, it) for it in ("perform", "evaluate")
         ):
@@ -215,13 +214,13 @@ class RewrittenYaml(_OfFile):
 
     def perform(self, context: LaunchContext) -> str:
         found = _read_file(self.path(context))
-        values = {k: self._value(it) for k, it in _texts(context, self.param_rewrites).items()}
+        values = {k: self._value(it) for k, it in _as_texts(context, self.param_rewrites).items()}
         _replace(found, values)
         for path, value in values.items():
             _set(found, path.split("."), value)
-        found = _renamed(found, _texts(context, self.key_rewrites or {}))
+        found = _renamed(found, _as_texts(context, self.key_rewrites or {}))
         above = "" if self.root_key is None else text_of(context, self.root_key)
-        return _written(yaml.safe_dump({above: found} if above else found))
+        return _temporary_file(yaml.safe_dump({above: found} if above else found))
 
     def _value(self, text: str) -> Any:
         kinds: list[Callable[[str], Any]] = [int, float] if self.convert_types else []
@@ -242,9 +241,9 @@ class ReplaceString(_OfFile):
             return path
         with open(path, encoding="utf-8") as file:
             text = file.read()
-        for old, new in _texts(context, self.replacements).items():
+        for old, new in _as_texts(context, self.replacements).items():
             text = text.replace(old, new)
-        return _written(text)
+        return _temporary_file(text)
 
 
 class HasNodeParams(_OfFile):
@@ -285,13 +284,13 @@ def _read_file(path: str) -> Any:
         return load_yaml(file.read(), path) or {}
 
 
-def _written(text: str) -> str:
+def _temporary_file(text: str) -> str:
     with tempfile.NamedTemporaryFile("w", encoding="utf-8", delete=False) as file:
         file.write(text)
     return file.name
 
 
-def _texts(context: LaunchContext, given: Mapping[str, Text]) -> dict[str, str]:
+def _as_texts(context: LaunchContext, given: Mapping[str, Text]) -> dict[str, str]:
     return {key: text_of(context, it) for key, it in given.items()}
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Programs that a launch file starts, their environment, and what is done when something happens to
-them: nothing of it happens here; actions that are repeated. Names and signatures are those of launch
-jazzy, of loops those of rolling (actions/for_loop.py, since kilted 3.8.0).
-"""
+"""Programs, environment, events and loops of the stand-in for launch; nothing is started.
+
+Names and signatures are those of launch jazzy, of loops those of rolling (actions/for_loop.py,
+since kilted 3.8.0)."""
 
 from __future__ import annotations
 
@@ -160,15 +160,15 @@ class ForLoop(Action):
 
 def each_of(values: Text, actions: Iterable[Any]) -> ForEach:
     """Return ``<for_each>``: its actions, in which ``$(for-var)`` reads the values."""
-    return ForEach(values, lambda **known: _repeated(actions, known))
+    return ForEach(values, lambda **known: _repeat_with(actions, known))
 
 
 def loop_of(length: Text, name: str, actions: Iterable[Any]) -> ForLoop:
     """Return ``<for>``: its actions, in which ``$(index)`` reads the number."""
-    return ForLoop(length, lambda i: _repeated(actions, {name: i}), name)
+    return ForLoop(length, lambda i: _repeat_with(actions, {name: i}), name)
 
 
-def _repeated(actions: Iterable[Any], values: Mapping[str, Any]) -> list[Any]:
+def _repeat_with(actions: Iterable[Any], values: Mapping[str, Any]) -> list[Any]:
     known = {f"{ITERATED}{name}": str(value) for name, value in values.items()}
 
     def enter(context: LaunchContext) -> None:

@@ -140,7 +140,7 @@ class SetParameter(Action):
 
 
 def _add(context: LaunchContext, key: str, more: Iterable[Any]) -> None:
-    """Extend the list itself, as launch_ros does: a scope around this one sees it, too."""
+    """Extend the list itself, as launch_ros does: an enclosing scope sees it, too."""
     context.launch_configurations.setdefault(key, []).extend(more)
 
 

@@ -96,7 +96,7 @@ class LaunchContext:
 
     @property
     def depth(self) -> int:
-        """How many launch files are within each other."""
+        """The number of launch files that include each other here."""
         return len(self._locals)
 
     @property
@@ -169,7 +169,7 @@ def _substitution(
 
 def _configuration(it: Any, context: LaunchContext) -> str:
     name = text_of(context, it.variable_name)
-    return _looked_up(
+    return _look_up(
         context, context.launch_configurations, name, it.default, "launch configuration"
     )
 
@@ -178,10 +178,10 @@ def _environment_variable(it: Any, context: LaunchContext) -> str:
     name = text_of(context, it.name)
     if name not in context.environment:
         os.environ.get(name)  # raises for one that is set and hidden
-    return _looked_up(context, context.environment, name, it.default_value, "environment variable")
+    return _look_up(context, context.environment, name, it.default_value, "environment variable")
 
 
-def _looked_up(
+def _look_up(
     context: LaunchContext, known: Mapping[str, str], name: str, usual: Text, what: str
 ) -> str:
     if name not in known and usual is None:
@@ -189,7 +189,7 @@ def _looked_up(
     return known[name] if name in known else text_of(context, str_of(usual))
 
 
-def _expression(it: Any, context: LaunchContext) -> str:
+def _python_value(it: Any, context: LaunchContext) -> str:
     given = "math" if it.python_modules is None else it.python_modules
     names = [text_of(context, one) for one in ([given] if isinstance(given, str) else given)]
     modules = {name: importlib.import_module(name) for name in names}
@@ -201,10 +201,10 @@ def _expression(it: Any, context: LaunchContext) -> str:
 def _loop_value(it: Any, context: LaunchContext) -> str:
     known = context.get_locals_as_dict()
     own = {key.removeprefix(ITERATED): known[key] for key in known if key.startswith(ITERATED)}
-    return _looked_up(context, own, text_of(context, it.name), it.default_value, "value of a loop")
+    return _look_up(context, own, text_of(context, it.name), it.default_value, "value of a loop")
 
 
-def _is(value: bool) -> str:
+def _word(value: bool) -> str:
     return str(value).lower()
 
 
@@ -213,7 +213,7 @@ def _compared(value: Any) -> Any:
     texts = value if isinstance(value, list | tuple) else [value]
     if any(hasattr(it, "perform") for it in texts):
         return value
-    return "" if value is None else _is(value) if isinstance(value, bool) else str(value)
+    return "" if value is None else _word(value) if isinstance(value, bool) else str(value)
 
 
 def _equal(it: Any, context: LaunchContext) -> bool:
@@ -237,7 +237,7 @@ def _performed_truth(context: LaunchContext, value: Text) -> bool:
         raise SubstitutionFailure(error) from None
 
 
-def _chosen(it: Any, context: LaunchContext) -> str:
+def _if_else_value(it: Any, context: LaunchContext) -> str:
     chosen = it.if_value if _performed_truth(context, it.condition) else it.else_value
     return text_of(context, "" if chosen is None else chosen)
 
@@ -258,29 +258,29 @@ class AllSubstitution(Substitution):
         return [_performed_truth(context, it) for it in self.args]
 
     def perform(self, context: LaunchContext) -> str:
-        return _is(all(self.truths(context)))
+        return _word(all(self.truths(context)))
 
 
 class AnySubstitution(AllSubstitution):
     """Whether one of them is true."""
 
     def perform(self, context: LaunchContext) -> str:
-        return _is(any(self.truths(context)))
+        return _word(any(self.truths(context)))
 
 
 TextSubstitution = _substitution(lambda it, context: str(it.text), "text")
 LaunchConfiguration = _substitution(_configuration, "variable_name", "default")
 EnvironmentVariable = _substitution(_environment_variable, "name", "default_value")
-PythonExpression = _substitution(_expression, "expression", "python_modules")
+PythonExpression = _substitution(_python_value, "expression", "python_modules")
 _SIDES = ("left", "right")
-EqualsSubstitution = _substitution(lambda it, context: _is(_equal(it, context)), *_SIDES)
-NotEqualsSubstitution = _substitution(lambda it, context: _is(not _equal(it, context)), *_SIDES)
-AndSubstitution = _substitution(lambda it, context: _is(all(_truths(it, context))), *_SIDES)
-OrSubstitution = _substitution(lambda it, context: _is(any(_truths(it, context))), *_SIDES)
+EqualsSubstitution = _substitution(lambda it, context: _word(_equal(it, context)), *_SIDES)
+NotEqualsSubstitution = _substitution(lambda it, context: _word(not _equal(it, context)), *_SIDES)
+AndSubstitution = _substitution(lambda it, context: _word(all(_truths(it, context))), *_SIDES)
+OrSubstitution = _substitution(lambda it, context: _word(any(_truths(it, context))), *_SIDES)
 NotSubstitution = _substitution(
-    lambda it, context: _is(not _performed_truth(context, it.value)), "value"
+    lambda it, context: _word(not _performed_truth(context, it.value)), "value"
 )
-IfElseSubstitution = _substitution(_chosen, "condition", "if_value", "else_value")
+IfElseSubstitution = _substitution(_if_else_value, "condition", "if_value", "else_value")
 # launch/substitutions/for_loop_var.py (rolling).
 ForEachVar = _substitution(_loop_value, "name", "default_value")
 ForLoopIndex = _substitution(_loop_value, "name", "default_value")

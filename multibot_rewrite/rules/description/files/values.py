@@ -215,7 +215,7 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
 def _misspelt_library(
     subject: Subject, plugin: _Element, library: str, name: str
 ) -> Iterator[Problem]:
-    """Report an unknown library of a known class nearly so called; a note for one of other families."""
+    """Report an unknown library whose class is known in a library with nearly this name."""
     definitions = subject.tree.definitions
     if "::" not in name or definitions.values(library) or definitions.find("plugin", library):
         return
@@ -241,7 +241,7 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
 
 
 def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
-    """Yield classes without a plugin definition that are in no source: nearly a known one's name."""
+    """Yield classes that nothing defines and that are nearly a known one's name."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterfind("hardware/plugin"):
             name = text_of(it)

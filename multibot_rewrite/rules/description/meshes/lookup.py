@@ -278,7 +278,6 @@ def _box(path: str, state: tuple[int, ...], whole: bool) -> Extent | None:
 
 
 def _corners(path: str, data: bytes, size: int) -> Iterable[Vector]:
-    """Yield the corners of a mesh, as far as its data go; ``size`` is that of the whole file."""
     kind = os.path.splitext(path)[1].lower()
     count = int.from_bytes(data[_HEAD - 4 : _HEAD], "little")
     if kind == ".stl" and size == _HEAD + count * _TRIANGLE:

@@ -147,20 +147,18 @@ PARTLY = {ending: said for (ending,), said in ROWS["meshes"]}
 def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
     """Report extensions of meshes that no program knows."""
     for it in _meshes(subject):
-        ending = _ending(it)
+        ending = _extension(it)
         if ending not in ("stl", "dae", "obj") and ending not in PARTLY:
             fault = f"no program can load .{ending}" if ending else "it has no extension"
             yield problem(it, f"{it.name!r}: {fault}", "use .stl, .dae or .obj")
 
 
 def _meshes(subject: Subject) -> list[Used]:
-    """Return the meshes whose names are known."""
     used = used_files(subject)
     return [it for it in used if it.element.tag == "mesh" and "$" not in it.name]
 
 
-def _ending(it: Used) -> str:
-    """Return the extension of a file's name, in lower case."""
+def _extension(it: Used) -> str:
     base = it.name.replace("\\", "/").rpartition("/")[2]
     return base.rpartition(".")[2].lower() if "." in base else ""
 
@@ -170,7 +168,7 @@ def mesh_format_partly(subject: Subject) -> Iterator[Problem]:
     """Report each mesh format that only some programs read, once."""
     seen = set()
     for it in _meshes(subject):
-        ending = _ending(it)
+        ending = _extension(it)
         if ending in PARTLY and ending not in seen:
             seen.add(ending)
             yield problem(it, f"{it.name!r}: {PARTLY[ending]}", "use .stl, .dae or .obj")

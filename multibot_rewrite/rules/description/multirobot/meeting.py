@@ -46,7 +46,6 @@ def _shared_names(subject: Subject) -> tuple[Problem, ...]:
 
 
 def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
-    """Yield what a rewrite for the named robots would report with this code."""
     return (it for it in _shared_names(subject) if it.code == code)
 
 

@@ -24,7 +24,6 @@ from multibot_rewrite.rules.description.multirobot.topics import (
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.rules.subject import Subject
-from multibot_rewrite.system.records import NOWHERE
 
 if TYPE_CHECKING:
     from multibot_rewrite.description.steps.renames import RenameMap
@@ -160,6 +159,7 @@ def _one_device(subject: Subject) -> Iterator[Problem]:
         return
     params = [*root.iterfind("ros2_control/hardware/param")]
     from multibot_rewrite.producers.addresses import of_hardware  # most descriptions have none
+    from multibot_rewrite.system.records import NOWHERE
 
     starts = starts_of(subject, params)
     held = {(it.get("name", ""), (it.text or "").strip()): it for it in params}

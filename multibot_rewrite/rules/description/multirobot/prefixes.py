@@ -40,7 +40,9 @@ class WrittenName(NamedTuple):
 
 
 class Scope(NamedTuple):
-    """The names in one ``macro`` or outside of all; ``prefix_names``: prefixes and what has them."""
+    """The names in one macro, or outside of all of them (``macro`` is None then).
+
+    ``prefix_names`` are its prefixes and the properties made from them."""
 
     macro: _Element | None
     prefix_names: frozenset[str]
@@ -69,12 +71,14 @@ def scopes(root: _Element) -> list[Scope]:
         if tag in ("link", "joint"):
             declares = _declares(element)
             if name := element.get("name"):
-                (scope.declared if declares else scope.used).append(_name_at(element, "name", name))
+                (scope.declared if declares else scope.used).append(
+                    _written_name(element, "name", name)
+                )
             continue
         attribute = _REFERENCES[tag]
         value = element.get(attribute) if attribute else element.text
         if value and value.strip():
-            scope.used.append(_name_at(element, attribute, value.strip()))
+            scope.used.append(_written_name(element, attribute, value.strip()))
     return list(found.values())
 
 
@@ -86,8 +90,7 @@ def _declares(element: _Element) -> bool:
     return above is not None and (above.tag == "robot" or is_xacro(above))
 
 
-def _name_at(element: _Element, attribute: str, text: str) -> WrittenName:
-    """Return the name that an attribute or text of an element is."""
+def _written_name(element: _Element, attribute: str, text: str) -> WrittenName:
     words = frozenset(_names_in(text) if "$" in text else ())
     return WrittenName(element, attribute, text, words)
 

@@ -109,7 +109,7 @@ def absolute_topic(subject: Subject) -> Iterator[Problem]:
     shared = subject.settings.naming.shared_topics | set(TF_TOPICS)
     for claim in claims_of(subject, ROS_KINDS):
         name = _target(claim)
-        if name[:1] != "/" or not is_plain(name) or _is_gz(claim) or name.strip("/") in shared:
+        if name[:1] != "/" or not is_plain(name) or _is_of_gz(claim) or name.strip("/") in shared:
             continue
         # MB426 reports these.
         above = claim.element.iterancestors("plugin") if claim.site.form in REMAP_FORMS else ()
@@ -130,7 +130,7 @@ def _target(claim: Claim) -> str:
 @rule("MB402", "gz-topic-shared", NOTE)
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Report literal gz topics."""
-    claims = [it for it in claims_of(subject, ROS_KINDS) if _is_gz(it)]
+    claims = [it for it in claims_of(subject, ROS_KINDS) if _is_of_gz(it)]
     if not claims or _is_classic(subject):
         return
     for claim in claims:
@@ -142,8 +142,7 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
             yield Problem(claim.element, message, claim.attribute, hint)
 
 
-def _is_gz(claim: Claim) -> bool:
-    """Return whether a claim is of a plugin or sensor of the new Gazebo."""
+def _is_of_gz(claim: Claim) -> bool:
     return claim.site.section.startswith(GZ_SECTIONS)
 
 

@@ -241,7 +241,7 @@ TINY_MASS = 1e-6
 
 @rule("MB603", "link-without-mass", WARNING)
 def link_without_mass(subject: Subject) -> Iterator[Problem]:
-    """Yield the uppermost bodies without mass; in Gazebo errors if something in use is lost."""
+    """Yield the uppermost bodies without mass; errors in Gazebo, if something in use is lost."""
     robot = subject.robot
     mass = _masses(robot)
     if len(mass) < 2 or not any(it > 0 for it in mass.values()):

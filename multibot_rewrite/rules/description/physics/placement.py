@@ -155,8 +155,7 @@ def _is_written_alike(
     return written[0] == written[1]
 
 
-def _pose(subject: Subject, element: _Element) -> Pose | None:
-    """Return the pose of a visual, collision or joint; None for one that cannot be read."""
+def _pose_of(subject: Subject, element: _Element) -> Pose | None:
     return pose_in(subject.elements.first("origin").get(element))
 
 
@@ -164,7 +163,7 @@ def _box_around(subject: Subject, shapes: _Shapes) -> Extent | None:
     """Return the box around some shapes; None if one of them has no known size."""
     found = []
     for element, shape in shapes:
-        own = _pose(subject, element)
+        own = _pose_of(subject, element)
         extent = None if own is None else _extent(subject, shape, own)
         if extent is None:
             return None
@@ -200,7 +199,7 @@ def _covers_next(subject: Subject, link: Link, hard: _Shapes) -> bool:
     """Return whether the collision is where a link below is seen, such as a motor in a leg's hip."""
     own = _box_around(subject, hard)
     for joint in subject.robot.below.get(link.name, ()):
-        child, pose = subject.robot.link.get(joint.child), _pose(subject, joint.element)
+        child, pose = subject.robot.link.get(joint.child), _pose_of(subject, joint.element)
         box = _box_around(subject, _shapes(subject)[child.element][0]) if child else None
         if box and own and pose and _apart(placed_box(box, pose), own) <= 0:
             return True
@@ -214,7 +213,7 @@ def _distance_moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
     (one, visual), (other, collision) = seen[0], hard[0]
     if visual.tag != "mesh" or visual.items() != collision.items():
         return 0.0
-    here, there = _pose(subject, one), _pose(subject, other)
+    here, there = _pose_of(subject, one), _pose_of(subject, other)
     # Of a mesh that is turned as well it is unknown where it ends up.
     if here is None or there is None or not is_same(here.matrix, there.matrix):
         return 0.0
@@ -248,7 +247,7 @@ def _outside(subject: Subject, link: Link, centre: Vector) -> float:
         if length(centre) < FAR_OF_MESH:
             return 0.0
         below = [it.element for it in subject.robot.below.get(link.name, ())]
-        places = [_pose(subject, it) for it in (*below, *(element for element, _ in shapes))]
+        places = [_pose_of(subject, it) for it in (*below, *(element for element, _ in shapes))]
         known = [(0.0, 0.0, 0.0), *(it.at for it in places if it is not None)]
         way = min((length(minus(centre, it)) for it in known), default=inf)
         return way if way > FAR_OF_MESH else 0.0

@@ -229,7 +229,10 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB242", "nothing-to-control", ERROR)
 def nothing_to_control(subject: Subject) -> Iterator[Problem]:
-    """Report plugins of the two simulators in a whole description without a <ros2_control>."""
+    """Report plugins of the two simulators in a whole description without a system.
+
+    Source: component_parser.cpp throws; gz_ros2_control_plugin.cpp, gazebo_ros2_control_plugin.cpp
+    catch it."""
     if not subject.robot.links or subject.elements.every("ros2_control"):
         return
     for plugin in manager_plugins(subject):
@@ -253,7 +256,7 @@ def hardware_of_other_simulator(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB236", "joint-with-two-drivers", WARNING)
 def joint_with_two_drivers(subject: Subject) -> Iterator[Problem]:
-    """Report joints that plugins drive together with command interfaces or each other, once each."""
+    """Report, once a joint, joints that two plugins command, or a plugin and a command interface."""
     rivals = {
         (name_of(joint), simulator.name): "<ros2_control>"
         for system, _, simulator in simulated(subject)

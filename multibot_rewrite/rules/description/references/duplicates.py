@@ -237,10 +237,10 @@ def topic_of_two_systems(subject: Subject) -> Iterator[Problem]:
     if sum("::" in it.get("name", "") for it in subject.elements.every("plugin")) < 2:
         return
     from multibot_rewrite.base.naming import make_naming
-    from multibot_rewrite.planning.bridged_topics import DIRECTIONS, model_name, plugin_topics
+    from multibot_rewrite.planning.bridged_topics import DIRECTIONS, plugin_topics
 
     inventory = subject.inventory
-    model = model_name(inventory) or "MODEL"
+    model = inventory.model or "MODEL"
     senders: dict[str, str] = {}
     for plugin, topics, _ in plugin_topics(inventory, model, model, make_naming("tf-per-robot")):
         own = {f"/{it.gz.lstrip('/')}" for it in topics if it.direction == DIRECTIONS["in"]}

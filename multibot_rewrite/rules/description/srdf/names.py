@@ -47,7 +47,10 @@ def of_moveit(
 
 
 def level_of(subject: Subject) -> str:
-    """Return the level of a name that the URDF lacks: a warning if URDF or reader are not certain."""
+    """Return the level of a name that the URDF lacks, a warning where that may be no error.
+
+    Pinocchio leaves a joint of a state out and reads no group; a URDF that was found may be another
+    variant of the robot."""
     is_named = subject.settings.urdf and not is_pinocchios(subject.document.root)
     return "" if is_named else WARNING
 

@@ -188,7 +188,10 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
 
 
 def _level(subject: Subject, param: _Element, text: str) -> str:
-    """Return the level of a <ros2_control> value that is no number; Humble ignores min and max."""
+    """Return the level of a value of <ros2_control> that is no number.
+
+    Humble keeps min and max and reads neither (component_parser.cpp:261), later releases go on
+    without them (``retrieve_min_max_interface_values``); an empty value is none."""
     if param.get("name") == "initial_value":
         return "" if text else WARNING
     return NOTE if since_jazzy(subject) else WARNING
