@@ -144,7 +144,8 @@ def _adopted(job: _Job) -> Adopted:
     lacks = {
         it.path: _names_without(it, names[it.path], job) for it in descriptions if it.path in names
     }
-    own = {path: _namespace_argument(its) for path, its in arguments.items()}
+    spaces = {path: name for path, its in arguments.items() if (name := _namespace_argument(its))}
+    job = job._replace(spaces=spaces)
     made = Adopted("", {}, {}, (), (), {})
     found: list[Description] = []
     for argument in (*dict.fromkeys(partial.values()), ""):
@@ -155,7 +156,7 @@ def _adopted(job: _Job) -> Adopted:
             # What another configuration has may lack it, too.
             short = {it.path for it in found if lacks[it.path] or _names_without(it, argument, job)}
             found = [it for it in found if it.path in short]
-        made = _with_more(made, found, argument, own, job) if found else made
+        made = _with_more(made, found, argument, job) if found else made
     if not found and not lacks:
         nothing = f"{job.folder}: there is no description of a robot in it"
         raise InputError(next(iter(job.unread.values()), nothing))
@@ -163,16 +164,14 @@ def _adopted(job: _Job) -> Adopted:
     return made._replace(unread=job.unread, already=names, bare={**bare, **made.bare})
 
 
-def _with_more(
-    made: Adopted, found: Sequence[Description], argument: str, own: Mapping[str, str], job: _Job
-) -> Adopted:
+def _with_more(made: Adopted, found: Sequence[Description], argument: str, job: _Job) -> Adopted:
     """Return the result with more descriptions, that have the argument or get one."""
     # Raises InputError if there is nothing else.
     texts = {os.path.realpath(path): data for path, data in made.after.items()}
     try:
         if not texts.keys().isdisjoint(texts_of(found)):
             found = [_expanded_again(it, texts, {}, job) for it in found]
-        more = _with_related_files(_best(found, argument, own, job), found, job)
+        more = _with_related_files(_best(found, argument, job), found, job)
     except InputError as error:
         if not argument and not made.argument:
             raise
@@ -190,13 +189,16 @@ def _combined(one: Any, two: Any) -> Any:
 
 
 class _Job(NamedTuple):
-    """The package to adopt; ``unread`` gets what cannot be expanded."""
+    """The package to adopt; ``unread`` gets what cannot be expanded.
+
+    ``spaces`` are arguments for a namespace that descriptions have already, by path."""
 
     folder: str
     package: Package
     tree: Tree
     how: Expanding
     unread: dict[str, str]
+    spaces: Mapping[str, str] = MappingProxyType({})
 
 
 def _with_related_files(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
@@ -252,9 +254,7 @@ class _Attempt(NamedTuple):
         return {os.path.realpath(it.path) for it in self.bases} if self.is_new else set()
 
 
-def _best(
-    found: Sequence[Description], argument: str, own: Mapping[str, str], job: _Job
-) -> Adopted:
+def _best(found: Sequence[Description], argument: str, job: _Job) -> Adopted:
     """Return the better result of two: the argument in calls that take one, or before names alone."""
     # Without an ``argument`` of their own the descriptions get a new one.
     texts = texts_of(found)
@@ -270,7 +270,7 @@ def _best(
             attempt = _Attempt(name, not argument, texts, sources.carriers(name), found)
             attempt = _with_lacking_edits(attempt, job)
             attempt = _with_calls(attempt, sources, job) if in_calls else attempt
-            made.append(_with_namespace(attempt, own, job))
+            made.append(_with_namespace(attempt, job))
         except InputError as error:
             wrong.append(error)
         if made and len(made[-1].verified) == len({it.path for it in found}):
@@ -382,16 +382,15 @@ def _with_argument(
     ), after
 
 
-def _with_namespace(attempt: _Attempt, own: Mapping[str, str], job: _Job) -> Adopted:
+def _with_namespace(attempt: _Attempt, job: _Job) -> Adopted:
     """Return the result with an argument for a namespace, if one changes names alone."""
-    # ``own`` are such arguments that descriptions have already, by path.
     found, prefix = attempt.bases, attempt.argument
-    has = {it.path: own.get(it.path, "") for it in found}
+    has = {it.path: job.spaces[it.path] for it in found if it.path in job.spaces}
     # An argument that is made whole is one change.
-    none = any(has.values()) or not attempt.is_new
+    none = has or not attempt.is_new
     space = namespaced([] if none else found, attempt.texts, job.tree)
     why = "it has an argument for a namespace"
-    left = [*space.left, *(Left(path, f"{why}: {it}") for path, it in has.items() if it)]
+    left = [*space.left, *(Left(path, f"{why}: {it}") for path, it in has.items())]
     if space.argument:
         try:
             made, after = _with_argument(attempt, job, space.edits)
