@@ -220,11 +220,12 @@ def _changed_related_files(
     urdf = next(it for it in package.descriptions if changes[it.path]).inventory.document.source
     old, new = symbol.old.encode(), symbol.new.encode()
     for path, data in ((it, read_bytes(it)) for it in package.found.launch):
-        slots = literal_parameters(path, data, symbol.old) if old in data else ()
-        own = [start for start, *name in slots if _is_named(*name, symbol, urdf)]
-        edits = [SourceEdit(path, start, start + len(old), new) for start in own]
-        if edits:
-            yield path, (edited({path: data}, edits)[path], len(edits))
+        with suppress(MultibotError):
+            slots = literal_parameters(path, data, symbol.old) if old in data else ()
+            own = [start for start, *name in slots if _is_named(*name, symbol, urdf)]
+            edits = [SourceEdit(path, start, start + len(old), new) for start in own]
+            if edits:
+                yield path, (edited({path: data}, edits)[path], len(edits))
 
 
 def _is_named(node: str, key: str, symbol: _Symbol, urdf: bytes) -> bool:

@@ -108,6 +108,8 @@ def test_a_literal_parameter_of_a_launch_file_is_renamed(package: Path) -> None:
     old = "".join(lines).replace("GIVEN", given)
     (package / "launch/a.launch.py").write_text(old)
     (package / "launch/a.launch.xml").write_text(XML)
+    # One that cannot be read is left.
+    (package / "launch/b.launch.xml").write_text(XML.replace("/><", "><"))
     made = rename_symbol("base_link", "chassis", str(package))
     new = {Path(path).name: data.decode() for path, data in made.after.items()}
     assert new["a.launch.xml"] == XML.replace("base_link", "chassis")
@@ -115,6 +117,7 @@ def test_a_literal_parameter_of_a_launch_file_is_renamed(package: Path) -> None:
     assert [(it.place, it.why) for it in made.left] == [
         (f"{package}/r.urdf.xacro:2", "it names 'base_link'"),
         (f"{package}/launch/a.launch.py:5", "the launch file names 'base_link'"),
+        (f"{package}/launch/b.launch.xml:1", "the launch file names 'base_link'"),
     ]
 
 
