@@ -222,7 +222,7 @@ def _changed_related_files(
     for path, data in ((it, read_bytes(it)) for it in package.found.launch):
         with suppress(MultibotError):
             slots = literal_parameters(path, data, symbol.old) if old in data else ()
-            own = [start for start, *name in slots if _is_named(*name, symbol, urdf)]
+            own = (start for start, node, key in slots if _is_named(node, key, symbol, urdf))
             edits = [SourceEdit(path, start, start + len(old), new) for start in own]
             if edits:
                 yield path, (edited({path: data}, edits)[path], len(edits))
