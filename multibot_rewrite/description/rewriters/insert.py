@@ -241,8 +241,8 @@ def _remaps(
 def _relative(
     host: etree._Element, section: PluginDefinition, naming: Naming, home: etree._Element | None
 ) -> Iterator[Insertion]:
-    """Yield a rule without the namespace in front of each that has it. Of a process only the rules of
-    its first robot count, so they have to be the same for all robots."""
+    """Yield a rule without the namespace in front of each that has it."""
+    # Of a process only the rules of its first robot count: they are to be the same for all robots.""
     rules = rules_in(home) if home is not None and naming.topics == NAMESPACE else []
     there = {it.source for it in rules}
     for it in rules:
