@@ -359,6 +359,6 @@ def _joint_fault(seen: Index, it: Description, robot: str) -> tuple[str, str, st
         if lost := _lost_links(seen, it, robot) if lacking else []:
             level = ERROR if is_planned_with(seen, topic) else WARNING
             message = f"{who} sends no state of {missed} on {topic}, so no transform leads to"
-            hint = f"see which joints {who} is told to send"
+            hint = f"see which joints {who} is set to send"
             return f"{message} {shorten(lost, SEVERAL)}", hint, level
     return None

@@ -274,6 +274,16 @@ CONTROLLED = DRIVER[:-1] + f", name='driver', parameters=[{PATH.format('config/c
 SCRIPT = "ExecuteProcess(cmd=['python3', '/opt/wave.py', '2'])"
 
 
+def test_a_window_that_the_fleet_file_gives_each_robot(package: Path) -> None:
+    write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}"})
+    fleet_of(package)
+    assert not (package.parent / "out/robot1/rover.rviz").exists()
+    file = package.parent / "fleet.yaml"
+    file.write_text(file.read_text() + "own_nodes: [rviz2]\n")
+    assert main(["build", str(file), "-o", str(package.parent / "out"), "-q", "--force"]) == 0
+    assert (package.parent / "out/robot2/rover.rviz").exists()
+
+
 def test_cartographer_has_the_options_and_the_arguments_of_its_launch_file(package: Path) -> None:
     (package / "config/slam.lua").write_text('options = {map_frame = "map", odom_frame = "odom"}\n')
     words = (
