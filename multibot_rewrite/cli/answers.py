@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What ``urdf-lint --lsp`` answers. Each function runs in a process of its own, where files that are
-open in the editor are read as they are there."""
+"""What ``urdf-lint --lsp`` answers, each time in a process of its own.
+
+Files that are open in the editor are read there as they are in it."""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
 from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.checks.judged_plan import plan_fleet
-from multibot_rewrite.cli.lint import given, of_release
+from multibot_rewrite.cli.lint import SUFFIXES, given, of_release
 from multibot_rewrite.cli.multibot import run
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.processes import server
@@ -30,38 +31,35 @@ from multibot_rewrite.lint.failures import failure
 from multibot_rewrite.lint.files.included import set_among
 from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.refactor.places import Place, places_of
-from multibot_rewrite.refactor.rename import rename_symbol
+from multibot_rewrite.refactor.rename import Place, find_places, rename_symbol
 from multibot_rewrite.rules.settings import Settings
 
 _LINTED = (*DESCRIPTIONS, SRDF, WORLD, *(kind for kind, _ in BESIDE))
-_ENDS = (".urdf", ".xacro", ".srdf", ".sdf")
+_ENDS = tuple(it for it in SUFFIXES if it not in (".yaml", ".yml", ".xml", ".lua"))
 
 
 def answer(connection: Connection) -> None:
-    """Answer one question: with what a function returns, or an error that is meant for a person. It
-    comes with the texts that the editor has open, by the real paths of the files."""
+    """Send the answer to the one question that comes, or an error that is meant for a person."""
     os.dup2(2, 1)  # the server's output is for the editor alone
     server(os.getpid())  # the first xacro would wait for it
     with suppress(EOFError):  # the editor is gone
-        texts, function, *given = connection.recv()
+        texts, function, *words = connection.recv()
         OPEN_TEXTS.update(texts)
         try:
-            connection.send(function(*given))
+            connection.send(function(*words))
         except MultibotError as error:
             connection.send(UsageError(str(error)))
 
 
 def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
     """Return the findings of a file; none for a file of a kind that is not linted."""
-    kind = recognised(read_file(path))
     try:
-        settings = _settings(options, path)
+        kind, settings = recognised(read_file(path)), _settings(options, path)
         if settings and kind == FLEET:
             fleet = closed_plan(plan_fleet(read_fleet(path, settings.distro, os.environ)))
             found = (*fleet.table.problems, *fleet.gaps)
             return [it if it.file else it._replace(file=path) for it in found]
-        is_linted = kind in _LINTED or path.endswith(_ENDS)
+        is_linted = settings and (kind in _LINTED or path.endswith(_ENDS))
         return lint_file(path, settings) if settings and is_linted else ()
     except RewriteRefused as error:
         return error.findings
@@ -84,35 +82,36 @@ def fixed(options: argparse.Namespace, path: str) -> bytes:
 
 
 def explain(options: argparse.Namespace, path: str, words: Sequence[str]) -> str:
-    """Return what ``multibot inspect`` prints of words; nothing of those that it does not know."""
-    given = [f"--definitions={it}" for it in _definitions(options, path)]
-    given += [f"--distro={options.distro}"] if options.distro else []
+    """Return what ``multibot inspect`` prints about words; "" for unknown ones."""
+    definitions, distro = _definitions(options, path)
+    others = [f"--definitions={it}" for it in definitions] + [f"--distro={distro}"] * bool(distro)
     printed = TextIOWrapper(BytesIO(), "utf-8")
     with redirect_stdout(printed):
         for it in filter(None, dict.fromkeys(words)):
             with suppress(MultibotError):
-                run(["inspect", it, *given])
+                run(["inspect", it, *others])
     return printed.buffer.getvalue().decode()
+
+
+def places(options: argparse.Namespace, path: str, at: tuple[int, int]) -> list[Place]:
+    """Return all places in a file's package of the name at line and column ``at``."""
+    return find_places(path, at, _folder(path), *_definitions(options, path))
 
 
 def renamed(options: argparse.Namespace, path: str, place: Place, new: str) -> Mapping[str, bytes]:
     """Return the files that ``multibot rename`` changes, by path."""
-    folder, known, distro = _folder(path), _definitions(options, path), options.distro or ""
-    made = rename_symbol(place.name, new, folder, kind=place.kind, definitions=known, distro=distro)
-    return made.after
+    folder, (definitions, distro) = _folder(path), _definitions(options, path)
+    how = {"kind": place.kind, "definitions": definitions, "distro": distro}
+    return rename_symbol(place.name, new, folder, **how).after
 
 
-def _definitions(options: argparse.Namespace, path: str) -> tuple[str, ...]:
-    return (*configured_definitions(path), *options.definitions)
+def _definitions(options: argparse.Namespace, path: str) -> tuple[tuple[str, ...], str]:
+    """Return the definition files and the release that are asked for."""
+    return (*configured_definitions(path), *options.definitions), options.distro or ""
 
 
 def _folder(path: str) -> str:
-    """Return the package of a file; where that has no description, the folder of packages around it."""
+    """Return a file's package, or the folder above one that has no description."""
     own = package_of(path)
     folder = own[1] if own else os.path.dirname(path)
     return os.path.dirname(folder) if own and not descriptions_below(folder) else folder
-
-
-def places(options: argparse.Namespace, path: str, at: tuple[int, int]) -> list[Place]:
-    """Return all places, in its package, of the name at a place of a file."""
-    return places_of(path, at, _folder(path), _definitions(options, path), options.distro or "")

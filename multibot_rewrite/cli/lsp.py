@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``urdf-lint --lsp``: a language server. It says where things are in a text; ``answers`` says what.
+"""``urdf-lint --lsp``: a language server. It says where things are in a text, ``answers`` says what.
 
 Each answer is made by a process of its own, forked from one that has all loaded: no answer makes the
-server wait, one that is out of date is stopped, and none knows files as they were before.
-"""
+server wait, an outdated one is stopped, and none remembers files as they were."""
 
 from __future__ import annotations
 
@@ -15,8 +14,6 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from multiprocessing import get_context
-from multiprocessing.connection import Connection
-from multiprocessing.process import BaseProcess
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -24,7 +21,7 @@ from multibot_rewrite.base.model import MultibotError, Unusable
 from multibot_rewrite.cli import answers
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.description.steps.apply import cut
-from multibot_rewrite.refactor.places import Place
+from multibot_rewrite.refactor.rename import Place
 from multibot_rewrite.version import __version__
 
 try:
@@ -36,17 +33,17 @@ except ImportError as error:
     raise Unusable(f"{error}: editors need it: pip install 'multibot_rewrite[lsp]'") from None
 
 # Seconds: without a change before a file is linted, and after which an answer is given up.
-PAUSE, MOST = 0.03, 60.0
+PAUSE, LONGEST = 0.03, 60.0
 _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
-# A name, a tag with its bracket or an attribute with its value.
+# A tag with its bracket, an attribute with its value, or a word.
 _MARKED = re.compile(r"</?[\w:.-]+|[\w:.-]+\s*=\s*(?:\"[^\"]*\"?|'[^']*'?)|[^\s<>]+")
 # The ends of a word around the cursor.
 _BEFORE, _AFTER = (re.compile(it) for it in (r"[^\s\"'<>=,(){}\[\]]*$", r"^[^\s\"'<>=,(){}\[\]]*"))
 
 
 class Server(LanguageServer):
-    """The open files of an editor, and what was found in them."""
+    """The open files of an editor, and the findings in them."""
 
     def __init__(self) -> None:
         super().__init__("urdf-lint", __version__)
@@ -55,37 +52,36 @@ class Server(LanguageServer):
         self.context.set_forkserver_preload(["multibot_rewrite.cli.warm"])
         self.found: dict[str, Sequence[Finding]] = {}
         self.running: dict[str, asyncio.Task[None]] = {}
-        self.spares: list[tuple[BaseProcess, Connection]] = []
+        self.waiting: list[tuple[Any, Any]] = []
 
-    async def ask(self, function: Callable[..., Any], uri: str, *given: Any) -> Any:
-        """Return what a function of ``answers`` returns for a file; None where it does not end well. An
-        error of this package is shown."""
+    async def ask(self, function: Callable[..., Any], uri: str, *words: Any) -> Any:
+        """Return the answer of a function of ``answers``; None for none, an error is shown."""
         documents = self.workspace.text_documents.values()
         texts = {os.path.realpath(it.path): it.source.encode() for it in documents}
         path = self.workspace.get_text_document(uri).path
-        self.spare()
-        child, connection = self.spares.pop()
+        self.have_one_waiting()
+        child, connection = self.waiting.pop()
         try:
-            connection.send((texts, function, self.options, path, *given))
-            answer = await asyncio.wait_for(asyncio.to_thread(connection.recv), MOST)
+            connection.send((texts, function, self.options, path, *words))
+            answer = await asyncio.wait_for(asyncio.to_thread(connection.recv), LONGEST)
         except (EOFError, OSError, asyncio.TimeoutError):
             return None
         finally:
             child.kill()
-            self.spare()
+            self.have_one_waiting()
         if not isinstance(answer, MultibotError):
             return answer
         self.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Warning, str(answer)))
         return None
 
-    def spare(self) -> None:
-        """Have a process that only waits for a question."""
-        if not self.spares:
+    def have_one_waiting(self) -> None:
+        """Start a process that waits for a question, unless one does."""
+        if not self.waiting:
             ours, theirs = self.context.Pipe()
             child = self.context.Process(target=answers.answer, args=(theirs,), daemon=True)
             child.start()
             theirs.close()
-            self.spares.append((child, ours))
+            self.waiting.append((child, ours))
 
     def diagnose(self, uri: str) -> None:
         """Lint a file, once nobody has typed for a moment."""
@@ -97,17 +93,15 @@ class Server(LanguageServer):
         await asyncio.sleep(PAUSE)
         is_open = uri in self.workspace.text_documents
         found = await self.ask(answers.diagnose, uri) if is_open else ()
-        if found is not None:
-            self.publish(uri, found)
-
-    def publish(self, uri: str, found: Sequence[Finding]) -> None:
-        """Show what was found in an open file, in the files that it is about."""
+        if found is None:
+            return
+        # An included file has the findings of all open files that include it.
         old, self.found[uri] = self.found.get(uri, ()), found
         every = [(self.uri_of(it.file), it) for its in self.found.values() for it in its]
         for each in {uri, *(self.uri_of(it.file) for it in (*old, *found))}:
             document = self.workspace.get_text_document(each)
-            its = dict.fromkeys(it for file, it in every if file == each)
-            shown = [_diagnostic(document, it) for it in its]
+            own = dict.fromkeys(it for file, it in every if file == each)
+            shown = [_diagnostic(document, it) for it in own]
             params = lsp.PublishDiagnosticsParams(each, shown, document.version)
             self.text_document_publish_diagnostics(params)
 
@@ -117,12 +111,11 @@ class Server(LanguageServer):
         known = (it.uri for it in documents if os.path.realpath(it.path) == real)
         return next(known, None) or from_fs_path(os.path.abspath(path)) or path
 
-    def changes(self, files: Mapping[str, bytes]) -> lsp.WorkspaceEdit:
-        """Return the edits that make these texts of files."""
-        texts = {self.uri_of(path): text for path, text in files.items()}
-        lines = self.workspace.get_text_document
-        edits = {uri: [*_edits(lines(uri).lines, text)] for uri, text in texts.items()}
-        return lsp.WorkspaceEdit(changes=edits)
+    def edits_to(self, files: Mapping[str, bytes]) -> lsp.WorkspaceEdit:
+        """Return the edits that give files these texts."""
+        texts = {self.uri_of(path): text.decode() for path, text in files.items()}
+        lines = {uri: self.workspace.get_text_document(uri).lines for uri in texts}
+        return lsp.WorkspaceEdit({uri: [*_edits(lines[uri], it)] for uri, it in texts.items()})
 
     def location(self, it: Place) -> lsp.Location:
         """Return a place as the editor counts."""
@@ -139,18 +132,17 @@ def _range(document: TextDocument, line: int, column: int, end: int, last: int) 
 
 def _diagnostic(document: TextDocument, it: Finding) -> lsp.Diagnostic:
     line, column = max(it.line, 1), max(it.column, 1)
-    text = next(iter(document.lines[line - 1 :]), "")
-    marked = _MARKED.match(text, column - 1)
+    marked = _MARKED.match(next(iter(document.lines[line - 1 :]), ""), column - 1)
     where = _range(document, line, column, line, (marked.end() if marked else column) + 1)
     message = ": ".join(filter(None, (it.robot, it.node, it.message)))
-    words = "; ".join(filter(None, (message, it.hint)))
+    text = "; ".join(filter(None, (message, it.hint)))
     severity = _SEVERITIES.get(it.level, lsp.DiagnosticSeverity.Information)
-    return lsp.Diagnostic(where, words, severity, it.code, source="urdf-lint")
+    return lsp.Diagnostic(where, text, severity, it.code, source="urdf-lint")
 
 
-def _edits(old: Sequence[str], text: bytes) -> Iterator[lsp.TextEdit]:
-    """Return the edits of whole lines that make a text of another."""
-    new = text.decode().splitlines(keepends=True)
+def _edits(old: Sequence[str], text: str) -> Iterator[lsp.TextEdit]:
+    """Yield the edits of whole lines that make a text."""
+    new = text.splitlines(keepends=True)
     for tag, start, end, first, last in SequenceMatcher(None, old, new, False).get_opcodes():
         if tag != "equal":
             where = lsp.Range(lsp.Position(start, 0), lsp.Position(end, 0))
@@ -209,7 +201,7 @@ async def _actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
     if fixable and any(_FIX_ALL.startswith(it) for it in only):
         made.append(("Fix all that urdf-lint can", _FIX_ALL, await server.ask(answers.fixed, uri)))
     return [
-        lsp.CodeAction(title, kind, edit=server.changes({path: text}))
+        lsp.CodeAction(title, kind, edit=server.edits_to({path: text}))
         for title, kind, text in made
         if text is not None and any(kind.startswith(it) for it in only)
     ]
@@ -237,5 +229,5 @@ async def _references(params: lsp.ReferenceParams) -> list[lsp.Location]:
 async def _rename(params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
     for place in (await _places(params))[:1]:
         uri, new = params.text_document.uri, params.new_name
-        return server.changes(await server.ask(answers.renamed, uri, place, new) or {})
+        return server.edits_to(await server.ask(answers.renamed, uri, place, new) or {})
     return None

@@ -277,7 +277,7 @@ def test_levels_are_those_of_the_editor(editor: Editor, package: Path) -> None:
     editor.close(path)
     fleet = FLEET.replace("layout: tf-per-robot", "layout: tf-per-robot\nstack: nav2")
     found = editor.open(package / "fleet.yaml", fleet)
-    assert ("MG413", 2) in [(it.code, it.severity) for it in found]
+    assert ("MG316", 3) in [(it.code, it.severity) for it in found]
     assert {it.source for it in found} == {"urdf-lint"}
     editor.close(package / "fleet.yaml")
 

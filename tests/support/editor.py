@@ -114,7 +114,7 @@ class Editor:
         return self.shown.get(uri, [])
 
     def until(self, path: Path, code: str) -> list[lsp.Diagnostic]:
-        """What is shown of a file, as soon as a finding with that code is."""
+        """Return what is shown of a file, as soon as a finding with that code is."""
 
         async def seen() -> None:
             while code not in codes(self.shown.get(path.as_uri(), [])):
@@ -136,7 +136,7 @@ class Editor:
     def references(
         self, path: Path, text: str, word: str, every: bool = True
     ) -> list[tuple[str, int, str]]:
-        """The places of a name; without ``every`` none that declares it."""
+        """Return the places of a name; without ``every`` none that declares it."""
         params = lsp.ReferenceParams(lsp.ReferenceContext(every), *at(path, text, word))
         return self._places(self.run(self.client.text_document_references_async(params)))
 
@@ -151,7 +151,7 @@ class Editor:
         return sorted(made)
 
     def rename(self, path: Path, text: str, word: str, new: str) -> dict[str, str]:
-        """The texts of the files that change, by name."""
+        """Return the texts of the files that change, by name."""
         document, where = at(path, text, word)
         params = lsp.RenameParams(document, where, new)
         return applied(self.run(self.client.text_document_rename_async(params)), {path: text})
@@ -170,7 +170,7 @@ def codes(shown: list[lsp.Diagnostic]) -> list[str]:
 
 
 def at(path: Path, text: str, word: str) -> tuple[lsp.TextDocumentIdentifier, lsp.Position]:
-    """The place of a word's second character; ``|`` in the word stands where the cursor is."""
+    """Return the place of a word's second character, or of the cursor, ``|`` in it."""
     before, _, after = word.partition("|") if "|" in word else (word[:1], "", word[1:])
     start = text.index(before + after) + len(before)
     lines = text[:start].split("\n")
@@ -179,7 +179,7 @@ def at(path: Path, text: str, word: str) -> tuple[lsp.TextDocumentIdentifier, ls
 
 
 def applied(edit: lsp.WorkspaceEdit | None, opened: dict[Path, str]) -> dict[str, str]:
-    """The texts that an edit makes, by the names of the files."""
+    """Return the texts that an edit makes, by the names of the files."""
     made = {}
     for uri, edits in ((edit and edit.changes) or {}).items():
         path = Path(uri.removeprefix("file://"))
@@ -193,7 +193,7 @@ def applied(edit: lsp.WorkspaceEdit | None, opened: dict[Path, str]) -> dict[str
 
 @contextmanager
 def edited(folder: Path, *options: str) -> Iterator[Editor]:
-    """An editor whose server is stopped in the end, and says so."""
+    """Yield an editor whose server is stopped in the end, and says so."""
     editor = Editor()
     editor.start(folder, *options)
     try:
