@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the plan of a fleet file or of robots, with what is wrong between and in them, and what the
-nodes of one leave idle: without a lifecycle manager or a joint, by the rules of ``check-launch``."""
+"""Makes the plan of a fleet file or of robots, with what is wrong in them and between them."""
 
 from __future__ import annotations
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the robots of a fleet collide, and names to be shared that none of them has; names that two
-declare, or that have a robot's name twice; and unused controller managers."""
+"""Where the robots of a fleet collide, by the names that they declare, and names that nothing uses."""
 
 from __future__ import annotations
 

@@ -31,10 +31,10 @@ Undo = Callable[[argparse.Namespace], bytes]
 def with_missing_options(
     error: RewriteRefused, options: argparse.Namespace, undo: Undo, robot: str, data: bytes
 ) -> RewriteRefused:
-    """Return the error with the options that are missing as its hint, if some make ``undo`` of the
-    ``data`` succeed: with links shared that are without the robot's name, if others have it.
+    """Return the error with the options as its hint with which ``undo`` of the ``data`` succeeds.
 
-    What ``undo`` gives is verified: rewritten with these options it is the file again.
+    Links without the robot's name may be shared, if others have it. What ``undo`` gives is
+    verified: rewritten with these options it is the file again.
     """
     links = [it.decode("utf-8", "replace") for it in _LINK.findall(data)]
     bare = [it for it in links if robot not in it]

@@ -68,8 +68,8 @@ def one_for_a_cause(
 
 
 def subject_of(plan: Index, it: Finding) -> tuple[str, ...]:
-    """Return the code, and the names without those of robots or the message; equal for what is found
-    in the sources of a plan and in what runs of it."""
+    """Return what is equal for a finding in the sources of a plan and in what runs of it."""
+    # The code, and the names without those of robots, or else the message.""
     return (it.code, *map(plan.plain, it.names)) if it.names else (it.code, it.message)
 
 

@@ -53,13 +53,14 @@ def test_a_named_release_is_one_of_ros_2(more: str) -> None:
         ("<description>catkin and ament_cmake</description>", False),
     ],
 )
+@pytest.mark.parametrize("file", ["a.urdf", "a.xacro"])
 def test_the_package_decides_where_the_description_does_not(
-    tmp_path: Path, package: str, is_ros_2: bool
+    tmp_path: Path, package: str, is_ros_2: bool, file: str
 ) -> None:
     (tmp_path / "package.xml").write_text(f"<package>{package}</package>")
     folder = tmp_path / "urdf"
     folder.mkdir()
-    assert imu_plugins("", str(folder / "a.urdf")) == [is_ros_2, is_ros_2]
+    assert imu_plugins("", str(folder / file)) == [is_ros_2, is_ros_2]
 
 
 MOVE = """\

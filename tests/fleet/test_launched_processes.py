@@ -825,7 +825,8 @@ def test_a_vendors_own_spawner_is_the_only_one(words: str, tmp_path: Path) -> No
     body = f"""
         IncludeLaunchDescription([FindPackageShare('ros_gz_sim'), '/launch/gz_sim.launch.py']),
         Node(package='acme', executable='spawn_it', {given}
-            arguments=[{words}{", " if words else ""}'--x', '1.5', '--Y', '0.3', '--keep']),
+            arguments=[{words}{", " if words else ""}'--model-name', 'rover', '--x', '1.5',
+                       '--Y', '0.3', '--keep']),
     """
     more = "simulator: gazebo"
     text = FLEET.replace("robot2,", "robot2, pose: {{x: 4, y: 1, yaw: 2}},")
@@ -833,7 +834,8 @@ def test_a_vendors_own_spawner_is_the_only_one(words: str, tmp_path: Path) -> No
         patched.setitem(globals(), "FLEET", text)
         found = actions(tmp_path, body, more=more)
     assert "create" not in told(found)
-    assert of(found, "spawn_it")["arguments"][-5:] == ["--x", "4.0", "--Y", "2.0", "--keep"]
+    wanted = ["--model-name", "robot2", "--x", "4.0", "--Y", "2.0", "--keep"]
+    assert of(found, "spawn_it")["arguments"][-7:] == wanted
     assert told(found).count("spawn_it") == 1
 
 

@@ -8,6 +8,7 @@ Expectations: gz_ros2_control_plugin.cpp (the manager and the plugin's own node 
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.launched_robot import NOT_SPAWNED
 
 ROVER = """\
 <robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -37,6 +39,25 @@ ARGUMENT = '<xacro:arg name="{}" default="{}"/>'
 INSIDE = "<ros><namespace>{}</namespace></ros>"
 LIDAR = """<gazebo reference="base_link"><sensor name="lidar" type="ray">
   <plugin name="lidar" filename="libgazebo_ros_ray_sensor.so">{}</plugin></sensor></gazebo>"""
+
+CONTROLLED = """\
+arm:
+  controller_manager:
+    ros__parameters: {drive: {type: diff_drive_controller/DiffDriveController}}
+  drive:
+    ros__parameters: {left_wheel_names: [wheel_joint], right_wheel_names: [wheel_joint]}
+"""
+LAUNCHED = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package='robot_state_publisher', executable='robot_state_publisher', namespace='arm'),
+        Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'arm/robot_description']),
+        Node(package='controller_manager', executable='spawner', namespace='arm', arguments=['drive'])])
+"""
 
 
 def xacro(folder: Path, argument: str, inside: str, plugin: str = OF_GZ) -> str:
@@ -123,3 +144,31 @@ def test_the_plugin_of_classic_is_a_node_besides_its_manager(
     found = said(planned(path, node_sets="gazebo_ros2_control", distro="humble"))
     wanted = {f"/robot{at}/stick/controller_manager" for at in (1, 2)} if wrong else set()
     assert {it.message.split()[3].rstrip(",") for it in found} == wanted
+
+
+def test_the_manager_of_a_launch_file_in_the_plugins_namespace_is_one(tmp_path: Path) -> None:
+    """A rule of the plugin in that namespace is for the controllers there (rcl remap.c)."""
+    rule = "<ros><namespace>arm</namespace><remapping>/arm/drive/cmd_vel:=/arm/go</remapping></ros>"
+    path = xacro(tmp_path, "", rule)
+    (tmp_path / "control.yaml").write_text(CONTROLLED)
+    (tmp_path / "up.launch.py").write_text(LAUNCHED)
+    launch, files = str(tmp_path / "up.launch.py"), {"params": str(tmp_path / "control.yaml")}
+    plan = planned(path, node_sets=[], launch=launch, related_files=files)
+    assert said(plan) == []
+    names = {name for run, _, name in plan.fleet.table.ends if run.node == "arm/drive"}
+    assert {"/robot1/arm/go", "/robot2/arm/go"} <= names
+
+
+def test_controllers_whose_spawners_a_condition_keeps_out_do_not_run(tmp_path: Path) -> None:
+    """Also beside a launch file of a package that is not here, which starts something else."""
+    path = xacro(tmp_path, "", "")
+    (tmp_path / "control.yaml").write_text(textwrap.dedent(CONTROLLED.partition("\n")[2]))
+    off = "from launch.conditions import IfCondition\n" + LAUNCHED.replace("'arm',", "'',").replace(
+        "arguments=['drive'])", "arguments=['drive'], condition=IfCondition('false')), MORE"
+    )
+    more = "Node(package='acme', executable='driver')"
+    (tmp_path / "up.launch.py").write_text(off.replace("MORE", more))
+    launch, files = str(tmp_path / "up.launch.py"), {"params": str(tmp_path / "control.yaml")}
+    plan = planned(path, node_sets=[], launch=launch, related_files=files)
+    whens = {run.fact.when for run in plan.fleet.table.runs if run.node == "drive"}
+    assert whens == {NOT_SPAWNED}

@@ -171,12 +171,29 @@ def test_a_start_loads_no_more_than_it_needs() -> None:
     assert sorted(there & set(LATE)) == []
 
 
+NOT_NEEDED = {
+    "cli.check": "planning.records planning.planned_system knowledge.records knowledge.node_library",
+    "cli.plan": "cli.check_launch live.diagnose library.systems description.joining.join",
+    "cli.build": "description.joining.join related_files.join producers.rosgraph.reading",
+    "cli.rewrite": "knowledge.records system.records",
+    "lint.groups as it; [it.rules_of(one, False) for one in it.GROUPS[:8]]": "system.records",
+    "lint.run": "description.rewriters.plugin_definitions",
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", NOT_NEEDED)
+def test_a_command_loads_no_records_that_it_does_not_make(command: str) -> None:
+    there = loaded(f"import multibot_rewrite.{command}")
+    assert there & {f"multibot_rewrite.{it}" for it in NOT_NEEDED[command].split()} == set()
+
+
 @pytest.mark.slow
 def test_a_check_pays_for_no_source_that_it_does_not_look_at() -> None:
     there = loaded("import multibot_rewrite.cli.check")
     assert "multibot_rewrite.rules.check" in there
     sources = ("ros.child", "snapshot_file", "zenoh.observe", "zenoh.session")
-    late = {*LATE, "lxml", "subprocess", "urllib.request"}
+    late = {*LATE, "inspect", "lxml", "subprocess", "urllib.request"}
     assert there & {*late, *(f"multibot_rewrite.producers.{it}" for it in sources)} == set()
 
 

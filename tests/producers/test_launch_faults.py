@@ -583,7 +583,7 @@ def test_a_link_to_itself_in_the_folder_is_passed_over(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "loop.yaml").symlink_to("loop.yaml")
-    of_nodes(tmp_path, _TIMED, head=_HEAD)
+    of_nodes(tmp_path, _AMCL, _BASE, head=_HEAD)
     assert main(["check-launch", str(tmp_path / LAUNCH)]) == 0
     assert "cannot be read" not in capsys.readouterr().err
 

@@ -416,3 +416,21 @@ def test_a_launched_node_in_cpp_without_the_extra(
     main(["check-launch", str(launch)])
     said = capsys.readouterr().err
     assert "1 node not known" in said and "multibot_rewrite[sources]" in said
+
+
+def test_a_service_of_the_simulator_is_no_robots(acme: Path) -> None:
+    text = """import rclpy
+from gazebo_msgs.srv import SpawnEntity
+from std_srvs.srv import Trigger
+node = rclpy.create_node('tool')
+node.create_client(SpawnEntity, '/spawn_entity')
+node.create_client(SpawnEntity, 'own')
+node.create_client(Trigger, '/reset')
+"""
+    (acme / "scripts/tool.py").write_text(text)
+    ends = read("tool.py", acme).facts.endpoints
+    assert {it.name: bool(it.fixed and it.own) for it in ends if it.role == "calls"} == {
+        "/spawn_entity": True,
+        "own": False,
+        "/reset": False,
+    }

@@ -6,7 +6,11 @@ from __future__ import annotations
 import pytest
 from launched_nodes import AMCL, AT, launched, runs, started
 
-from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
+from multibot_rewrite.fleet.fleet import known_nodes
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.planning.of_runs import with_names
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
+from multibot_rewrite.producers.launch.running import Knowledge, running_nodes
 from multibot_rewrite.producers.launch.spawners import spawned_in
 
 DRIVE, ARM = "diff_drive_controller/DiffDriveController", "pid_controller/PidController"
@@ -60,3 +64,21 @@ def test_a_spawner_that_an_event_starts_makes_its_controllers_optional() -> None
     late = spawner("drive")._replace(later="at an event")
     assert runs(launched(manager(MANAGER_FILE), late))["drive"].when == "at an event"
     assert "spawner" not in runs(launched(AMCL, late))
+
+
+@pytest.mark.parametrize(("release", "is_process"), [("humble", True), ("jazzy", False)])
+@pytest.mark.parametrize("name", ["", "cm"])
+def test_the_name_of_a_manager_is_that_of_its_process(
+    name: str, release: str, is_process: bool
+) -> None:
+    """As rcl has it for three nodes of one process with __node:=cm (asked with rclpy): /robot1/cm for
+    each, ~/odom of each is /robot1/cm/odom."""
+    own = manager(MANAGER_FILE, namespace="/robot1")._replace(name=name)
+    load = spawner("drive", "-c", name or "controller_manager", namespace="/robot1")
+    nodes = known_nodes(None, release, ()).library.nodes
+    known = Knowledge(nodes, load_known_nodes("", release), release)
+    found = running_nodes(LaunchGraph((own, load), ()), known).nodes
+    (drive,) = (it for it in found if it.node == "drive")
+    node = "/robot1/cm" if name and is_process else "/robot1/drive"
+    assert drive.full_name == node
+    assert f"{node}/odom" in [told for _, told in with_names(drive).names]

@@ -43,7 +43,8 @@ def plugin_section(
         # Nothing in ROS 1 reads a <ros>.
         if found and not (with_ros and all(it.ros == ROS_1 for it in found)):
             return _section_by_ros(found, plugin), True
-    if not with_ros:
+    # A system of gz-sim is called by its class: whether it has a node is not known.
+    if not with_ros or "::" in plugin.get("name", ""):
         return None, False
     return definitions.find("plugin", WITH_ROS)[0], False
 

@@ -68,7 +68,6 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
         found = list(_of_defaults(host, section, declared, naming, hidden))
         if any(site.path == "ros/remapping" for site in section.sites):
             found += _remaps(host, section, naming, home)
-            found += _relative(host, section, naming, home)
         if naming.separators:
             found += _ros_1_namespaces(host, section, naming)
         if section.helper and naming.separators and naming.topics != NAMESPACE:
@@ -216,6 +215,7 @@ def _remaps(
 ) -> Iterator[Insertion]:
     """Yield a rule for each topic that only a remap can move, unless the file has one."""
     rules = rules_in(home)
+    parent, wrap = (host, "ros") if home is None else (home, "")
     node, namespace = named(host, section)
     of_node = ("", "" if section.process_wide else node)
     for wired in (it for it in section.wired if not it.is_moved):
@@ -231,24 +231,15 @@ def _remaps(
             continue
         if there:
             target = spelled(naming, ROBOT_SLOT, "topic", there[0].target, True)
-        parent, wrap = (host, "ros") if home is None else (home, "")
         xml = f"<remapping>{topic}:={target}</remapping>"
         of_controllers = section.process_wide and topic in section.publishes
         made = Insertion(parent, wrap, xml, "topic", topic, target)
         yield made._replace(of_controllers=of_controllers)
-
-
-def _relative(
-    host: etree._Element, section: PluginDefinition, naming: Naming, home: etree._Element | None
-) -> Iterator[Insertion]:
-    """Yield a rule without the namespace in front of each that has it. Of a process only the rules of
-    its first robot count, so they have to be the same for all robots."""
-    rules = rules_in(home) if home is not None and naming.topics == NAMESPACE else []
-    there = {it.source for it in rules}
-    for it in rules:
-        old, _, new = relative(it, host, section, naming).partition(":=")
-        if old and home is not None and old not in there:
-            made = Insertion(home, "", f"<remapping>{old}:={new}</remapping>", "topic", old, new)
+    # Of a whole process those of the first robot count: they have to be the same for all.
+    for rule in rules if naming.topics == NAMESPACE else ():
+        old, _, new = relative(rule, host, section, naming).partition(":=")
+        if old and all(it.source != old for it in rules):
+            made = Insertion(parent, "", f"<remapping>{old}:={new}</remapping>", "topic", old, new)
             yield made._replace(of_controllers=True)
 
 

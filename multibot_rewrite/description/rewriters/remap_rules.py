@@ -121,8 +121,8 @@ def named(host: etree._Element, section: PluginDefinition) -> tuple[str, str]:
 def relative(
     rule: RemapRule, host: etree._Element, section: PluginDefinition, naming: Naming
 ) -> str:
-    """Return an absolute rule of a whole process without the plugin's namespace, for all robots alike;
-    nothing if it is not below that, or if names of it stay absolute."""
+    """Return an absolute rule of a whole process without the plugin's namespace, or nothing."""
+    # Nothing for a rule that is not below it, or names of which stay absolute.""
     wide = section.process_wide and not (section.helper or rule.node or rule.scheme)
     namespace = named(host, section)[1].strip("/")
     root = f"/{namespace}/" if namespace else "/"

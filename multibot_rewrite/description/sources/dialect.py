@@ -41,7 +41,7 @@ def ros_shown(data: bytes, file: str, tree: Tree) -> str:
     has_ros = any(not _is_inserted(it) for it in root.iterfind(".//plugin/ros"))
     if has_ros or {ROS_2} in found or root.find("ros2_control") is not None:
         return ROS_2
-    return ros_of_package(file) or (ROS_1 if {ROS_1} in found else "")
+    return ros_of_package(file.removesuffix(" (expanded)")) or (ROS_1 if {ROS_1} in found else "")
 
 
 def _is_inserted(element: _Element) -> bool:

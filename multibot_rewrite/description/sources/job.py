@@ -204,8 +204,7 @@ def reader(
 
 
 def _naming_of(job: Job) -> Naming:
-    """Return the naming of a description. A layout that keeps models renames them if the description
-    has its own in a value: a plugin looks for it by the name that it is spawned with."""
+    """Return the naming of a description, which renames a model that a plugin looks for by its name."""
     naming = job.naming
     name = _MODEL.search(job.urdf[0] if job.urdf else job.data)
     found = name and re.findall(_IN_VALUE % re.escape(name[1]), name.string)

@@ -38,6 +38,7 @@ def release_said(told: str, text: bytes, file: str, who: str = "it") -> SaidRele
     """Return the release that was given, else that of a description's text or repository."""
     if told:
         return SaidRelease(told)
+    file = file.removesuffix(" (expanded)")
     if built := release_of_build(file):
         return SaidRelease(built, f"{MANIFEST} says so")
     if library := evidence(text):

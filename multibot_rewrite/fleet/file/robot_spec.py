@@ -3,7 +3,7 @@
 
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError, UsageError
@@ -132,17 +132,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         related_files.pop("bridge", None)
     texts = texts_of(listed(related_files.get(PARAMS, [])), file)
     node_sets = tuple(listed(own.get("node_sets", data.get("node_sets", []))))
-    try:
-        facts_of(node_sets, data.get("nodes") or None, release, listed(data.get("nodl", [])))
-    except UsageError as error:
-        keys: tuple[Path, ...] = (
-            ("robots", at, "node_sets"),
-            ("node_sets",),
-            ("nodes",),
-            ("nodl",),
-        )
-        file, line = next(read.places[it] for it in keys if it in read.places)
-        raise InputError(f"{file}:{line}: {error}") from None
+    _check_node_sets(read, at, node_sets, release)
     namespace = str(own.get("namespace", name)).strip("/")
     if "/" in namespace and naming.topics != NAMESPACE:
         what = f"{name!r} has the namespace {namespace!r}, but here names get no namespace"
@@ -182,6 +172,18 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         fills=own.get("fill_arguments", data.get("fill_arguments", True)),
         parts=parts,
     )
+
+
+def _check_node_sets(read: FleetData, at: int, node_sets: Sequence[str], release: str) -> None:
+    """Raise InputError with the line that names a node set or node which is not known."""
+    try:
+        nodes, nodl = read.data.get("nodes") or None, listed(read.data.get("nodl", []))
+        facts_of(node_sets, nodes, release, nodl)
+    except UsageError as error:
+        above: tuple[Path, ...] = (("node_sets",), ("nodes",), ("nodl",))
+        keys = (("robots", at, "node_sets"), *above)
+        file, line = next(read.places[it] for it in keys if it in read.places)
+        raise InputError(f"{file}:{line}: {error}") from None
 
 
 def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:

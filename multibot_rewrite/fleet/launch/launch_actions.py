@@ -235,7 +235,7 @@ def _start_of(given: _Given, name: str) -> Start:
         words = with_frames([path_of(it) for it in words], own)
     placing = given.plan.evidence_of(given.robot).placing
     if placing is not None and spawn.is_of_vendor(placing) and made.number == placing.number:
-        words = tuple(spawn.placed_at(words, given.robot.spec.pose))
+        words = tuple(spawn.placed_at(words, given.robot.spec))
     lua = given.robot.spec.related_files.get("lua", ())
     if facts.kind == CARTOGRAPHER and (lua or facts.usual):
         folder, file = os.path.split(path_for(given.robot, *lua[:1] or (OPTIONS,)))

@@ -145,7 +145,9 @@ def nodes_with(
         return nodes_of(node_set, given, known)
     # Controllers of which launch files say whether they run -> the condition; empty for always.
     later = {name: it.later for name, it in launched.spawned.items()}
-    if later and launched.whole:
+    # Spawners that a condition keeps out are not in a missing launch file.
+    kept_out = any(it.what.startswith(f"{MANAGER} ") for it in launched.idle)
+    if kept_out or (later and launched.whole):
         rest = (it.node for it in given if it.host_name and it.node not in later)
         later |= dict.fromkeys([*rest], NOT_SPAWNED)
     nodes, findings = nodes_of(launched.nodes, given, known, later)

@@ -277,7 +277,8 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     if own and not plan.fleet.naming.layout.namespaced:
         rules = (("__node", own.name), *rules)
     prefix = spec.tag if names.naming.layout.at_run_time else ""
-    return RvizRobot(spec.name, names, topics, spec.colour, known, prefix, rules)
+    apart = RVIZ in plan.file.own_nodes
+    return RvizRobot(spec.name, names, topics, spec.colour, known, prefix, rules, apart)
 
 
 def rviz_files(configs: Iterable[RvizOutput]) -> FilesToCheck:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.fleet.file.robot_spec import Pose
+from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import CLASSIC_PLUGIN, RewrittenRobot, at_robot
@@ -138,14 +138,15 @@ def is_of_vendor(own: LaunchedNode | None) -> bool:
     return own is not None and program_of(own) not in programs().spawners
 
 
-def placed_at(words: Sequence[str | File], pose: Pose | None) -> Iterator[str | File]:
-    """Yield the arguments of a spawner with another pose, where they have one."""
-    values = pose._asdict() if pose else {}
-    own = {flag.lstrip("-"): str(values[key]) for key, flag in FLAGS.items() if pose}
+def placed_at(words: Sequence[str | File], spec: RobotSpec) -> Iterator[str | File]:
+    """Yield the arguments of a spawner with a robot's pose and model name, where they have them."""
+    values = spec.pose._asdict() if spec.pose else {}
+    own = {flag.lstrip("-"): str(values[key]) for key, flag in FLAGS.items() if values}
     own |= {key: str(it) for key, it in values.items()}
+    own |= dict.fromkeys(("entity", "name", "model_name", "robot_name"), spec.model)
     before = ""
     for word in words:
-        yield own.get(before.lstrip("-"), word) if before[:1] == "-" else word
+        yield own.get(before.lstrip("-").replace("-", "_"), word) if before[:1] == "-" else word
         before = word if isinstance(word, str) else ""
 
 

@@ -2,7 +2,7 @@
 """The nodes that a robot of a fleet file runs: its node sets, as its own files have them."""
 
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
@@ -164,11 +164,7 @@ def robot_nodes(
     written = _with_written_topics(nodes, own, parameters, file.distro)
     named = _with_topics_of_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
-    # A vendor who bridges none of two that place the robot has a node that does.
-    held = {it.get("link", "") for it in source.root.iterfind("joint/child")} if launched else ()
-    two = bool(launched) and have_two_parents(has.sent)
-    sends = sends_too(nodes, free, has.sent) or two or any(it.child in held for it in has.sent)
-    placing = not brings_transforms(spec) and sends
+    is_sent = _is_sent_beside(has.sent, nodes, free, member, bool(launched))
     evidence = RobotEvidence(
         given,
         known,
@@ -177,9 +173,24 @@ def robot_nodes(
         spawned,
         frames=frames,
         simulated=has.sent,
-        is_placed=placing or is_led_elsewhere(member, spec),
+        is_placed=(is_sent and not brings_transforms(spec)) or is_led_elsewhere(member, spec),
     )
     return _with_launch(evidence, spec, launched, file)
+
+
+def _is_sent_beside(
+    sent: Sequence[Edge],
+    nodes: Sequence[NodeFacts],
+    free: Collection[str],
+    member: Member,
+    is_launched: bool,
+) -> bool:
+    """Return whether something else than the simulator sends a transform that places the robot."""
+    if sends_too(nodes, free, sent):
+        return True
+    # A vendor who bridges none of two that place the robot has a node that does.
+    held = {it.get("link", "") for it in member.source.root.iterfind("joint/child")}
+    return is_launched and (have_two_parents(sent) or any(it.child in held for it in sent))
 
 
 def _runs_of_lua(spec: RobotSpec) -> Iterator[Run]:

@@ -131,8 +131,7 @@ def without_mass(robot: RewrittenRobot) -> Iterator[Finding]:
 
 
 def lookups_of_model(robot: RewrittenRobot) -> Iterator[Claim]:
-    """Yield the values that use the robot's own model, but for topics that its plugins are given in
-    full: these do not depend on the name that it is spawned with."""
+    """Yield the values that use the robot's own model, but for topics given in full."""
     inventory = robot.member.inventory
     if found := [*values_with_own_model(inventory)]:
         bridged, _ = bridged_topics({"": inventory}, robot.topics.naming)
@@ -141,8 +140,8 @@ def lookups_of_model(robot: RewrittenRobot) -> Iterator[Claim]:
 
 
 def with_model(robot: RewrittenRobot) -> RewrittenRobot:
-    """Return the robot with the name that it is spawned with: that of the fleet file, else its own
-    model's where a plugin looks for that, else the robot's."""
+    """Return the robot with the name that it is spawned with."""
+    # That of the fleet file, else its own model's where a plugin looks for that, else the robot's.""
     spec = robot.spec
     own = spec.model or (any(lookups_of_model(robot)) and robot.member.inventory.model)
     return robot._replace(spec=spec._replace(model=own or spec.name))

@@ -183,6 +183,10 @@ def _at(place: Place) -> str:
     return f"{place.path}:{place.line}"
 
 
+# Packages of services that a simulator has once for all robots.
+_OF_SIMULATORS = ("gazebo_msgs/srv/", "ros_gz_interfaces/srv/", "simulation_interfaces/srv/")
+
+
 def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
     """Yield the endpoints that a declaration in a source makes."""
     when = _condition(names, it.spot, it.asked)
@@ -209,6 +213,8 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
     ):
         both = joined(when, more) if when and more else when or more
         end = bare._replace(name=name, parameter=parameter, when=both, transport=images)
+        if name.startswith("/") and bare.role == CALLS and type_.startswith(_OF_SIMULATORS):
+            end = end._replace(fixed="the one simulator has it", own=True)
         yield end
         if it.api.function in _WITH_INFO and type_ == IMAGE and "<" not in name:
             info = f"{name.rpartition('/')[0]}/camera_info".lstrip("/" if name[:1] != "/" else "")

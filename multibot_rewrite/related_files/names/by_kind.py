@@ -223,7 +223,6 @@ def frames_differ(context: Context) -> bool:
 
 
 def is_emptied(context: Context, kind: str, text: str) -> bool:
-    """Return whether a rewrite takes out a prefix, since the node puts it before frames that have the
-    robot's name."""
+    """Return whether a rewrite takes out a prefix, put before frames with the robot's name."""
     bare = frames_differ(context) and not context.names.naming.layout.at_run_time
     return bare and kind == "doubles_as_is" and is_plain(text)

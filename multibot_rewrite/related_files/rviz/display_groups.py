@@ -85,8 +85,8 @@ def for_one_process(one: RvizItem) -> bool:
 
 
 def has_own_windows(config: RvizConfig, robot: RvizRobot) -> bool:
-    """Return whether anything works for one robot only, in an rviz2 of its own."""
-    return robot.has_process and any(map(is_for_one, shown_in(config)))
+    """Return whether anything works for one robot only, in an rviz2 of its own, or it was asked for."""
+    return robot.apart or (robot.has_process and any(map(is_for_one, shown_in(config))))
 
 
 def shown_in(config: RvizConfig) -> tuple[RvizItem, ...]:

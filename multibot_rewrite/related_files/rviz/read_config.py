@@ -228,7 +228,7 @@ class RvizRobot(NamedTuple):
     with links without the robot's name and prefixed frames (robot_state_publisher's
     ``frame_prefix``); it stays empty for a rewritten description, whose links have the prefix
     themselves. ``rules`` are the name and the remap rules of an rviz2 of its own, which its node
-    sets start."""
+    sets start. ``apart``: it has a window of its own in any case."""
 
     name: str
     names: RelatedNames
@@ -237,6 +237,7 @@ class RvizRobot(NamedTuple):
     known: Mapping[str, str] = NOTHING
     tf_prefix: str = ""
     rules: tuple[tuple[str, str], ...] = ()
+    apart: bool = False
 
     @property
     def has_process(self) -> bool:

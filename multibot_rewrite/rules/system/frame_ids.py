@@ -308,52 +308,57 @@ def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, s
     if robot and others and robot not in others:
         message = f"{it.topic} has the links of {min(others)}: {shorten(it.links, SEVERAL)}"
         return message, f"load the description of {robot}", ERROR
-    own, pieces = _sent_frames(seen, it, robot)
-    if len(it.links) > 1 and own and not pieces:
-        links, sent = shorten(it.links, SEVERAL), shorten(own, SEVERAL)
+    frames = _sent_frames(seen, robot)
+    if len(it.links) > 1 and frames and frames.keys().isdisjoint(it.links):
+        links, sent = shorten(it.links, SEVERAL), shorten(sorted({*frames.values()}), SEVERAL)
         message = f"no link of {it.topic} ({links}) is a frame that is sent ({sent})"
         return message, "who sends tf has another description: load one in both", ERROR
-    return _joint_fault(seen, it, [links[0] for links in pieces[1:]]) if it.joints else None
+    return _joint_fault(seen, it, robot) if it.joints else None
 
 
-def _sent_frames(
-    seen: Index, it: Description, robot: str
-) -> tuple[list[str], Sequence[Sequence[str]]]:
-    """Return the frames that are sent of a robot or of none, and the links by the piece of tf that has
-    them, with or without a frame_prefix, the largest piece first; no piece if none is sent."""
-    edges = [one for tree in trees_of(seen, robot) for one in tree.edges]
-    own = sorted(one for one in frames_in(edges) if seen.frame_robot(one) in ("", robot))
-    above = {one.child.removeprefix("/"): one.parent.removeprefix("/") for one in edges}
+def _sent_frames(seen: Index, robot: str) -> dict[str, str]:
+    """Return the frames that are sent of a robot or of none, by name with and without a prefix."""
+    sent = {one for tree in trees_of(seen, robot) for one in frames_in(tree.edges)}
+    own = sorted(one for one in sent if seen.frame_robot(one) in ("", robot))
     named = ((one.rpartition("/")[2], seen.plain_frame(one), one) for one in own)
-    frames = {name: names[-1] for names in named for name in names}
-    if frames.keys().isdisjoint(it.links):
-        return own, ()
+    return {name: names[-1] for names in named for name in names}
+
+
+def _lost_links(seen: Index, it: Description, robot: str) -> list[str]:
+    """Return the first link of each piece of tf that has links, except for the largest piece."""
+    edges = [one for tree in trees_of(seen, robot) for one in tree.edges]
+    above = {one.child.removeprefix("/"): one.parent.removeprefix("/") for one in edges}
+    frames = _sent_frames(seen, robot) if edges else {}
     pieces = lists_by_key((root_of(frames.get(link, link), above), link) for link in it.links)
-    return own, sorted(pieces.values(), key=len, reverse=True)
+    each = sorted(pieces.values(), key=len, reverse=True) if frames else []
+    return [links[0] for links in each[1:]]
 
 
-def _joint_fault(seen: Index, it: Description, lost: Sequence[str]) -> tuple[str, str, str] | None:
-    """Return what is wrong where joint states in its namespace have none of its joints, or lack some
-    and links are ``lost`` for it; a link that nobody measures is only not shown, but planned with."""
-    heard = lists_by_key((one.topic, one.joints) for one in seen.system.heard if one.joints)
-    for topic, every in heard.items():
+def _joint_fault(seen: Index, it: Description, robot: str) -> tuple[str, str, str] | None:
+    """Return what is wrong where joint states in its namespace lack joints of a description.
+
+    They have none of them, or no transform leads to links of those that lack. A link that nobody
+    measures is only not shown, but planned with."""
+    space = it.topic.rpartition("/")[0]
+    heard = (
+        one for one in seen.system.heard if one.joints and one.topic.rpartition("/")[0] == space
+    )
+    for topic, every in lists_by_key((one.topic, one.joints) for one in heard).items():
         type_, senders = sent_on(seen, topic)
-        beside = topic.rpartition("/")[0] == it.topic.rpartition("/")[0]
         # One with joints of its own alone is healthy among others, so each of them has to be heard.
-        if type_ != words.JOINTS or not (beside and senders and len(every) >= len(senders)):
+        if type_ != words.JOINTS or not senders or len(every) < len(senders):
             continue
         named = unique(name for joints in every for name in joints)
-        lacking = [name for name in it.joints if name not in named]
-        own, who, sent, missed, links = (
-            shorten(one, SEVERAL) for one in (it.joints, senders, named, lacking, lost)
+        lacking = sorted({*it.joints}.difference(named))
+        own, who, sent, missed = (
+            shorten(one, SEVERAL) for one in (it.joints, senders, named, lacking)
         )
-        if len(lacking) == len(it.joints):
+        if len(lacking) == len({*it.joints}):
             message = f"{it.topic} has the joints {own}, and {who} sends {sent} on {topic}"
             return message, f"give {who} the names that the description has", ERROR
-        if lacking and lost:
-            message = (
-                f"{who} sends no state of {missed} on {topic}, so no transform leads to {links}"
-            )
+        if lost := _lost_links(seen, it, robot) if lacking else []:
             level = ERROR if is_planned_with(seen, topic) else WARNING
-            return message, f"see which joints {who} is told to send", level
+            message = f"{who} sends no state of {missed} on {topic}, so no transform leads to"
+            hint = f"see which joints {who} is set to send"
+            return f"{message} {shorten(lost, SEVERAL)}", hint, level
     return None

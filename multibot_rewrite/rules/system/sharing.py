@@ -128,8 +128,8 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
 
 
 def is_planned_with(seen: Index, topic: str) -> bool:
-    """Return whether joint states come to MoveIt, which plans as if an unknown joint were at its
-    default (planning_scene_monitor.cpp updateSceneWithCurrentState)."""
+    """Return whether joint states come to MoveIt."""
+    # It plans as if an unknown joint were at its default (planning_scene_monitor.cpp).""
     readers = nodes_of(seen.ends_at(TOPIC, topic).subscribers)
     return any(last_word(it).startswith("move_group") for it in readers)
 

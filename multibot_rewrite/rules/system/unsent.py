@@ -96,9 +96,10 @@ def _names_without_robot(seen: Index) -> Mapping[str, Sequence[str]]:
 
 
 def is_for_driver(seen: Index, it: Finding) -> bool:
-    """Return whether the driver of a real robot may mend it: it places the link at which the tree is in
-    pieces, which no other node's parameters name, and sends what a localizer waits for and a usual
-    frame of the robot."""
+    """Return whether the driver of a real robot may mend it.
+
+    It may place the link at which the tree is in pieces, which no other node's parameters name, and
+    send what a localizer waits for and a usual frame of the robot."""
     if it.code == map_not_joined.code:
         # With another name, a frame below the map is the wrong one.
         return len(it.names) == 1

@@ -23,6 +23,8 @@ DRIVE = """<robot name="r"><link name="a"/><gazebo>
 INCLUDED = "<gazebo><include><uri>model://x</uri></include></gazebo>"
 BELOW_MODEL = """<robot name="r"><link name="a"/><gazebo>
 <plugin name="l" filename="librotors_gazebo_lidar_plugin.so"/></gazebo></robot>"""
+CLASS = 'name="a::Arm" filename="libacme_arm.so"'
+UNKNOWN = ("1 plugin not known", "1 description the same for all robots")
 NO_LINK = ("1 robot without a link",)
 
 
@@ -98,6 +100,11 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
         (LIDAR.format("{name}/scan").replace("gpu_lidar", "contact"), ()),
         (LIDAR.format("x").replace("<topic>x</topic>", ""), ()),
         (BELOW_MODEL, ()),
+        # A system's @name is its class, of which no node is called.
+        (
+            DRIVE.format("x").replace('name="drive" filename="libgazebo_ros_diff_drive.so"', CLASS),
+            UNKNOWN,
+        ),
         # A <link> of a plugin is no link of the robot.
         (LIDAR.format("x").replace('<link name="a"/>', "<own><link>a</link></own>"), NO_LINK),
         # Its links are those of the model that it includes (x500 of PX4).

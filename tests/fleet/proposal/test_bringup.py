@@ -274,6 +274,37 @@ CONTROLLED = DRIVER[:-1] + f", name='driver', parameters=[{PATH.format('config/c
 SCRIPT = "ExecuteProcess(cmd=['python3', '/opt/wave.py', '2'])"
 
 
+def test_a_window_that_the_fleet_file_gives_each_robot(package: Path) -> None:
+    write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}"})
+    fleet_of(package)
+    assert not (package.parent / "out/robot1/rover.rviz").exists()
+    file = package.parent / "fleet.yaml"
+    file.write_text(file.read_text() + "own_nodes: [rviz2]\n")
+    assert main(["build", str(file), "-o", str(package.parent / "out"), "-q", "--force"]) == 0
+    assert (package.parent / "out/robot2/rover.rviz").exists()
+
+
+def test_cartographer_has_the_options_and_the_arguments_of_its_launch_file(package: Path) -> None:
+    (package / "config/slam.lua").write_text('options = {map_frame = "map", odom_frame = "odom"}\n')
+    words = (
+        "['-configuration_directory', 'FOLDER/../config', '-configuration_basename', 'slam.lua', "
+    )
+    words += "'-load_state_filename', 'hall.pbstream']"
+    node = f"Node(package='cartographer_ros', executable='cartographer_node', arguments={words})"
+    write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}; {node}"})
+    assert fleet_of(package)["related_files"]["lua"] == ["rover/config/slam.lua"]
+    text = (package.parent / "out/fleet.launch.py").read_text()
+    assert "'-load_state_filename', 'hall.pbstream'" in text
+    assert "'-configuration_directory', file(name)" in text
+    assert text.count("-configuration_basename") == 1
+    file = package.parent / "fleet.yaml"
+    data = yaml.safe_load(file.read_text())
+    del data["related_files"]
+    file.write_text(yaml.safe_dump(data))
+    assert main(["build", str(file), "-o", str(package.parent / "out"), "-q", "--force"]) == 0
+    assert "'slam.lua'" in (package.parent / "out/fleet.launch.py").read_text()
+
+
 def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
     """The parameter files of nodes are in the build without a word in the fleet file."""
     other = SHOWN.replace("rover.rviz", "a.rviz")

@@ -72,8 +72,9 @@ def of_one_type(
     known: Mapping[str, NodeFacts],
     rows: Iterable[str],
 ) -> list[NodeFacts]:
-    """Return the nodes, with commands of one type as far as the build may choose it; ``rows`` are the
-    types of the robot's own bridge."""
+    """Return the nodes with commands of one type, as far as the build may choose it.
+
+    ``rows`` are the types of the robot's own bridge."""
     choices = {it.node.name: it for it in _choices(nodes, own, free, given, known)}
     wanted = _wanted_type(tuple(choices.values()), free, nodes, rows)
     made = []

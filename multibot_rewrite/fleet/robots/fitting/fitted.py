@@ -146,8 +146,7 @@ NO_FRAMES: Frames = {}
 
 
 def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
-    """Return the usual frames that the robot lacks, each with its drive's frame for that place, or
-    with the usual link that it has."""
+    """Return the usual frames that the robot lacks, each with its drive's frame or usual link."""
     links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
     own = next((edge_of(ODOM, it) for it in BODY_FRAMES if it in links), None)
     placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), own)

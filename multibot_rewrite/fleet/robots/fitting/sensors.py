@@ -70,9 +70,10 @@ def bridge_rows_of(spec: RobotSpec) -> Iterator[BridgeRow]:
 
 
 def bridged_commands(member: Member, spec: RobotSpec) -> dict[str, str]:
-    """Return the types of commands that go to the simulator, by the topics of the robot's own bridge
-    files; then those that the description names besides, for which the build has rows. Where it has a
-    drive, other rows with velocities are for something else."""
+    """Return the types of commands that go to the simulator, by topic.
+
+    Those of the robot's own bridge files come first, then those that the description names, for
+    which the build has rows. Beside a drive, other rows with velocities are for something else."""
     rows = command_rows(spec)
     if spec.simulator == REAL or not rows:
         return {}
@@ -86,8 +87,7 @@ def bridged_commands(member: Member, spec: RobotSpec) -> dict[str, str]:
 
 
 def command_rows(spec: RobotSpec) -> list[BridgeRow]:
-    """Return the rows of the robot's own bridge files that bring something to the simulator, without
-    those for a model of another robot."""
+    """Return the rows of the robot's own bridge files that bring something to its model."""
     rows = [it for it in bridge_rows_of(spec) if it.end.role in ("", SUBSCRIBES)]
     models = [found["model"] for it in rows if (found := GZ_MODEL.fullmatch(it.inside))]
     others = {it for it in models if it != models[0] and not PLACEHOLDER.search(it)}
