@@ -11,7 +11,7 @@ import asyncio
 import gc
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from difflib import SequenceMatcher
 from multiprocessing import get_context
 from typing import Any
@@ -20,7 +20,6 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import MultibotError, Unusable
 from multibot_rewrite.cli import answers
 from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.refactor.rename import Place
 from multibot_rewrite.version import __version__
 
@@ -112,10 +111,21 @@ class Server(LanguageServer):
         return next(known, None) or from_fs_path(os.path.abspath(path)) or path
 
     def edits_to(self, files: Mapping[str, bytes]) -> lsp.WorkspaceEdit:
-        """Return the edits that give files these texts."""
-        texts = {self.uri_of(path): text.decode() for path, text in files.items()}
-        lines = {uri: self.workspace.get_text_document(uri).lines for uri in texts}
-        return lsp.WorkspaceEdit({uri: [*_edits(lines[uri], it)] for uri, it in texts.items()})
+        """Return the edits of whole lines that give files these texts."""
+        changes: dict[str, list[lsp.TextEdit]] = {}
+        for path, text in files.items():
+            uri, new = self.uri_of(path), text.decode().splitlines(keepends=True)
+            old = self.workspace.get_text_document(uri).lines
+            parts = SequenceMatcher(None, old, new, False).get_opcodes()
+            changes[uri] = [
+                lsp.TextEdit(
+                    lsp.Range(lsp.Position(start, 0), lsp.Position(end, 0)),
+                    "".join(new[first:last]),
+                )
+                for tag, start, end, first, last in parts
+                if tag != "equal"
+            ]
+        return lsp.WorkspaceEdit(changes)
 
     def location(self, it: Place) -> lsp.Location:
         """Return a place as the editor counts."""
@@ -140,15 +150,6 @@ def _diagnostic(document: TextDocument, it: Finding) -> lsp.Diagnostic:
     return lsp.Diagnostic(where, text, severity, it.code, source="urdf-lint")
 
 
-def _edits(old: Sequence[str], text: str) -> Iterator[lsp.TextEdit]:
-    """Yield the edits of whole lines that make a text."""
-    new = text.splitlines(keepends=True)
-    for tag, start, end, first, last in SequenceMatcher(None, old, new, False).get_opcodes():
-        if tag != "equal":
-            where = lsp.Range(lsp.Position(start, 0), lsp.Position(end, 0))
-            yield lsp.TextEdit(where, "".join(new[first:last]))
-
-
 server = Server()
 
 
@@ -163,13 +164,10 @@ def run(options: argparse.Namespace) -> int:
 @server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
 @server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)
 @server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
-def _changed(params: Any) -> None:
-    server.diagnose(params.text_document.uri)
-
-
 @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
-def _saved(_: lsp.DidSaveTextDocumentParams) -> None:
-    for uri in server.workspace.text_documents:  # one may include it
+def _changed(params: Any) -> None:
+    is_saved = isinstance(params, lsp.DidSaveTextDocumentParams)  # others may include it
+    for uri in server.workspace.text_documents if is_saved else [params.text_document.uri]:
         server.diagnose(uri)
 
 
@@ -186,25 +184,16 @@ async def _hover(params: lsp.HoverParams) -> lsp.Hover | None:
 
 @server.feature(lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions([_FIX, _FIX_ALL]))
 async def _actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
-    uri, where, only = params.text_document.uri, params.range, params.context.only or ("",)
-    document = server.workspace.get_text_document(uri)
-    path, source = document.path, document.source.encode()
-    # Only in the text that was linted, not in one that was typed since.
-    is_linted = uri in server.running and server.running[uri].done()
-    known = server.found.get(uri, ()) if is_linted else ()
-    fixable = [it for it in known if it.edits and it.file == path]
-    made: list[tuple[str, str, bytes | None]] = [
-        (f"Fix {it.code}: {it.message}", _FIX, b"".join(cut(source, sorted(it.edits))))
-        for it in fixable
-        if where.start.line < it.line <= where.end.line + 1
-    ]
-    if fixable and any(_FIX_ALL.startswith(it) for it in only):
-        made.append(("Fix all that urdf-lint can", _FIX_ALL, await server.ask(answers.fixed, uri)))
-    return [
-        lsp.CodeAction(title, kind, edit=server.edits_to({path: text}))
-        for title, kind, text in made
-        if text is not None and any(kind.startswith(it) for it in only)
-    ]
+    document = server.workspace.get_text_document(params.text_document.uri)
+    lines = range(params.range.start.line + 1, params.range.end.line + 2)
+    fixable = [it for it in server.found.get(document.uri, ()) if it.edits]
+    kinds = [_FIX_ALL] * bool(fixable) + [_FIX] * any(it.line in lines for it in fixable)
+    asked = [it for it in kinds if it.startswith(tuple(params.context.only or [""]))]
+    text = await server.ask(answers.fixed, document.uri) if asked else None
+    if text is None:
+        return []
+    edit = server.edits_to({document.path: text})
+    return [lsp.CodeAction("Fix all that urdf-lint can", it, edit=edit) for it in asked]
 
 
 async def _places(params: Any) -> list[Place]:
@@ -215,14 +204,11 @@ async def _places(params: Any) -> list[Place]:
 
 
 @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
-async def _definition(params: lsp.DefinitionParams) -> list[lsp.Location]:
-    return [server.location(it) for it in await _places(params) if it.declares]
-
-
 @server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
-async def _references(params: lsp.ReferenceParams) -> list[lsp.Location]:
-    every = params.context.include_declaration
-    return [server.location(it) for it in await _places(params) if every or not it.declares]
+async def _locations(params: Any) -> list[lsp.Location]:
+    context = getattr(params, "context", None)  # that of references
+    wanted = {False, context.include_declaration} if context else {True}
+    return [server.location(it) for it in await _places(params) if it.declares in wanted]
 
 
 @server.feature(lsp.TEXT_DOCUMENT_RENAME)

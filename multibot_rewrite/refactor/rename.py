@@ -276,8 +276,7 @@ def find_places(
     """Return all places in ``folder`` of the name that is at line and column ``at`` of a file."""
     tree = builtin_tree(tuple(definitions), release_here(distro))
     package = read_package(folder, tree, Expanding(BOUNDED, {}))
-    own = (it for it in package.descriptions if it.path in package.found.descriptions)
-    urdf = next((it.inventory.document.source for it in own), b"<robot/>")
+    urdf = next((it.inventory.document.source for it in package.descriptions), b"<robot/>")
     files = (_places_in_file(path, data, it) for path, data, it in _related_files(package, urdf))
     described = map(_places_in_description, package.descriptions)
     places = list(dict.fromkeys(chain.from_iterable(chain(described, files))))
