@@ -213,14 +213,20 @@ def test_no_file_of_a_robot_has_a_word_of_another(fleet: tuple[str, dict[str, st
 @pytest.mark.more
 def test_related_files_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> None:
     (tmp_path / "more").mkdir()
-    (tmp_path / "more" / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
+    own = tmp_path / "more" / "params.yaml"
+    own.write_text("amcl:\n  ros__parameters: {alpha1: 0.1}\n")
     text = SMALL.replace("[params.yaml]", "[params.yaml, more/params.yaml]")
     files = made(tmp_path, text)
-    assert "/robot1/x:" in files["robot1/more/params.yaml"]
+    assert "/robot1/amcl:" in files["robot1/more/params.yaml"]
     # What the folder of the fleet file is called makes no difference.
     assert "amcl" in files["robot1/params.yaml"]
     assert not any(tmp_path.name in it for it in files)
     assert "robot1/more/params.yaml" in files["fleet.launch.py"]
+    # No node that is started has a section there.
+    own.write_text("x:\n  ros__parameters: {a: 1}\n")
+    files = made(tmp_path, text)
+    assert "/robot1/x:" in files["robot1/more/params.yaml"]
+    assert "robot1/more/params.yaml" not in files["fleet.launch.py"]
 
 
 @pytest.mark.more

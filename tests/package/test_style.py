@@ -25,8 +25,6 @@ CLOCKS = {
     # The stamps of messages are told by the clock.
     "live/test_received.py",
     "live/test_frame_ids.py",
-    # A script: seconds that it prints.
-    "support/loaded_looks.py",
 }
 
 

@@ -13,7 +13,6 @@ import random
 import re
 import subprocess
 import sys
-import time
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -114,16 +113,12 @@ def main(words: Iterable[str]) -> int:
         ended = suppress(subprocess.TimeoutExpired)
         with ended, burning(burners), live_fleet.running(domain, *specs(graph), **more):
             for _ in range(LOOKS):
-                began = time.monotonic()
                 done = live_commands.multibot("check", env=env)
-                seconds = time.monotonic() - began
                 codes[done.returncode] += 1
                 wrong += done.returncode not in FINE
                 found = [" ".join(it) for it in FINDING.findall(done.stdout)]
                 last = done.stderr.splitlines()[-1:]
-                print(
-                    name, done.returncode, f"{seconds:.1f} s", found, *last, sep=" | ", flush=True
-                )
+                print(name, done.returncode, found, *last, sep=" | ", flush=True)
                 if done.returncode not in FINE:
                     print(done.stdout, done.stderr, sep="\n", flush=True)
     print(

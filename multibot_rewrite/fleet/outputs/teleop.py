@@ -45,8 +45,8 @@ def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
     found = []
     for robot in plan.robots:
         # Something reads velocity commands, or sends them to a base that is not in the plan.
-        own = _robot_ends(plan, robot)
-        sends = any(end.role == PUBLISHES and name == _usual_topic(robot) for _, end, name in own)
+        own, usual = _robot_ends(plan, robot), _usual_topic(robot)
+        sends = any(end.role == PUBLISHES and name == usual for _, end, name in own)
         if sends or _obeyed_topics([*_command_ends(plan, robot)]):
             found.append(teleop(plan, robot))
     return tuple(found)

@@ -155,15 +155,12 @@ def robot_topic(names: RelatedNames, value: str, known: Mapping[str, str] = NOTH
 def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
     """Return the topics of ``robot`` in a fleet, by those of a single robot's nodes."""
     ours = {node.name for node in facts if not node.shared}
-    node_set = {
-        node.full_name: node.node
-        for node in table.runs
-        if node.robot == robot and node.node in ours
-    }
+    own = [it for it in table.runs if it.robot == robot]
+    node_set = {it.full_name: it.node for it in own if it.node in ours}
     found: dict[str, str] = {}
-    for run, end, name in table.ends:
-        if run.robot == robot and run.full_name in node_set and end.kind in (TOPIC, ACTION):
-            above, _, node = node_set[run.full_name].rpartition("/")
+    for run in (it for it in own if it.full_name in node_set):
+        above, _, node = node_set[run.full_name].rpartition("/")
+        for end, name in (it for it in run.names if it[0].kind in (TOPIC, ACTION)):
             asked = end.remapped or asked_alone(run.fact, end)
             found.setdefault(expand(asked, above, node), name)
     return found
