@@ -19,7 +19,7 @@ from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
 from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.checks.judged_plan import plan_fleet
-from multibot_rewrite.cli.lint import SUFFIXES, given, of_release
+from multibot_rewrite.cli.lint import given, of_release
 from multibot_rewrite.cli.multibot import run
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.processes import server
@@ -35,7 +35,7 @@ from multibot_rewrite.refactor.rename import Place, find_places, rename_symbol
 from multibot_rewrite.rules.settings import Settings
 
 _LINTED = (*DESCRIPTIONS, SRDF, WORLD, *(kind for kind, _ in BESIDE))
-_ENDS = tuple(it for it in SUFFIXES if it not in (".yaml", ".yml", ".xml", ".lua"))
+_ENDS = (".urdf", ".xacro", ".srdf", ".sdf")
 
 
 def answer(connection: Connection) -> None:
