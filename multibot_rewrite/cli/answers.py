@@ -101,8 +101,8 @@ def places(options: argparse.Namespace, path: str, at: tuple[int, int]) -> list[
 def renamed(options: argparse.Namespace, path: str, place: Place, new: str) -> Mapping[str, bytes]:
     """Return the files that ``multibot rename`` changes, by path."""
     folder, (definitions, distro) = _folder(path), _definitions(options, path)
-    how = {"kind": place.kind, "definitions": definitions, "distro": distro}
-    return rename_symbol(place.name, new, folder, **how).after
+    how = {"kind": place.kind, "distro": distro}
+    return rename_symbol(place.name, new, folder, definitions=definitions, **how).after
 
 
 def _definitions(options: argparse.Namespace, path: str) -> tuple[tuple[str, ...], str]:

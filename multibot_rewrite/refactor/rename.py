@@ -24,6 +24,7 @@ from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
+from multibot_rewrite.description.sources.trace import WrittenAt
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.library.one_file import names_in_file
@@ -297,9 +298,9 @@ def _places_in_description(it: Description) -> Iterator[Place]:
         for name in names:
             end = name.at + len(name.text)
             change = change_of(it.inventory.document, claim, name.at, end, "")
-            found = _edit_of(it, change)
+            found: SourceEdit | Composed | WrittenAt | None = _edit_of(it, change)
             if isinstance(found, Composed):
-                found = it.read and it.read.origins.of(change.element)
+                found = it.read.origins.of(change.element) if it.read else None
             kind = _kind_of((name.kind, *name.kinds[:1]))
             if found and kind:
                 source, start = it.sources[found.file], found.start
@@ -314,5 +315,6 @@ def _places_in_file(path: str, data: bytes, file: NamedFile) -> Iterator[Place]:
         kind = _kind_of((site.kind, *OF_FILES.get(site.kind, ())))
         at = file.text.find(site.text, site.slot.start + site.at, site.slot.end)
         if kind and at >= 0:
-            ends = (len(file.text[:it].encode()) for it in (at, at + len(site.text)))
-            yield Place(path, *(locate(data, mark + it) for it in ends), kind, site.text, False)
+            both = (len(file.text[:it].encode()) for it in (at, at + len(site.text)))
+            start, end = (locate(data, mark + it) for it in both)
+            yield Place(path, start, end, kind, site.text, False)
