@@ -208,7 +208,7 @@ def test_a_quick_fix_is_that_of_the_command(editor: Editor, package: Path, tmp_p
     line = next(it.range.start.line + 1 for it in shown if it.code == "MB002")
     (one,) = editor.actions(path, line, "quickfix")
     assert one.edit == every.edit
-    assert editor.actions(path, 3, "quickfix") == []
+    assert editor.actions(path, 5, "quickfix") == []
     assert editor.actions(path, 4, "refactor") == []
     editor.close(path)
 
