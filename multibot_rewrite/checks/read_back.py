@@ -102,48 +102,53 @@ def _read_launch(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Find
         packages = {it.package for it in made.starts.every if it.process.is_include}
         notes = (it for it in graph.notes if it.missing not in packages)
         graph = graph._replace(notes=tuple(notes))
-        known = _fleet_knowledge(plan)
-        start = launched(graph, known)
-        seen = start.system
-        real = frozenset(it.spec.name for it in plan.robots if it.spec.simulator == REAL)
-        whole, started = start.with_bridged, made.starts.nodes
-        wrong = [*not_as_planned(made.planned, whole, started, made.findings, real)]
-        told = (*wrong, *made.findings, *plan.fleet.table.problems)
-        # Rows of bridges were compared with the sources: what these have is a warning.
-        codes = {it.code for it in told if it.level == ERROR or it.code == no_gz_topic.code}
-        # What a parameter file that is not here sets is in no written file.
-        graphs = (launch_of(it.spec.launch, it.spec.words[0]) for it in plan.robots)
-        if any(one.parameters for it in graphs for one in it.notes):
-            codes |= {no_type.code, no_joints.code}
-        by_plan = whose_by_plan(made.planned)
-        # What planned nodes give that another launch file starts.
-        elsewhere = {it.child for it in made.planned.edges if not {*it.publishers} <= started}
-        gives = (it for it in made.planned.ends if it.node not in started and it.role in _GIVES)
-        elsewhere |= {it.name for it in gives}
-        shared = {*made.planned.shared_topics}
-        alone = [
-            it
-            for it in _launch_errors(start, by_plan, codes, elsewhere)
-            # Robots may share a topic which the fleet file shares.
-            if it.code not in (COMMAND, DATA) or not {*it.names} <= shared
-        ]
-        alone = _not_open(alone, made)
-        # What is an error without the plan is one line, of that level.
-        errors = {(it.code, it.robot) for it in alone if it.robot}
-        wrong = [it for it in wrong if (it.code, it.robot) not in errors] + alone
-        # What two robots both have by their descriptions is one line, with what to do.
-        both = {it.names for it in plan.fleet.table.problems if it.level == ERROR and it.names}
-        wrong = [it for it in wrong if it.names not in both]
-        if any(it.code == NO_MANAGER.code for it in wrong):
-            remedy = _manager_hint(plan)
-            wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]
-        wrong = [*as_the_vendor_has_it(plan, index(seen, by_plan), wrong, known)]
+        wrong, seen = _judged(plan, made, graph)
         lost = [*_missing_parts(graph, seen, home)]
         for found in wrong:
             texts = (found.file, found.message, found.hint)
             file, message, hint = (text.replace(f"{home}/", "") for text in texts)
             lost.append(found._replace(file=file, message=message, hint=hint))
         return lost, graph
+
+
+def _judged(plan: FleetPlan, made: Outputs, graph: LaunchGraph) -> tuple[list[Finding], System]:
+    """Return what is wrong in the system that the printed launch file starts, and that system."""
+    known = _fleet_knowledge(plan)
+    start = launched(graph, known)
+    seen = start.system
+    real = frozenset(it.spec.name for it in plan.robots if it.spec.simulator == REAL)
+    whole, started = start.with_bridged, made.starts.nodes
+    wrong = [*not_as_planned(made.planned, whole, started, made.findings, real)]
+    told = (*wrong, *made.findings, *plan.fleet.table.problems)
+    # Rows of bridges were compared with the sources: what these have is a warning.
+    codes = {it.code for it in told if it.level == ERROR or it.code == no_gz_topic.code}
+    # What a parameter file that is not here sets is in no written file.
+    graphs = (launch_of(it.spec.launch, it.spec.words[0]) for it in plan.robots)
+    if any(one.parameters for it in graphs for one in it.notes):
+        codes |= {no_type.code, no_joints.code}
+    by_plan = whose_by_plan(made.planned)
+    # What planned nodes give that another launch file starts.
+    elsewhere = {it.child for it in made.planned.edges if not {*it.publishers} <= started}
+    gives = (it for it in made.planned.ends if it.node not in started and it.role in _GIVES)
+    elsewhere |= {it.name for it in gives}
+    shared = {*made.planned.shared_topics}
+    alone = [
+        it
+        for it in _launch_errors(start, by_plan, codes, elsewhere)
+        # Robots may share a topic which the fleet file shares.
+        if it.code not in (COMMAND, DATA) or not {*it.names} <= shared
+    ]
+    alone = _not_open(alone, made)
+    # What is an error without the plan is one line, of that level.
+    errors = {(it.code, it.robot) for it in alone if it.robot}
+    wrong = [it for it in wrong if (it.code, it.robot) not in errors] + alone
+    # What two robots both have by their descriptions is one line, with what to do.
+    both = {it.names for it in plan.fleet.table.problems if it.level == ERROR and it.names}
+    wrong = [it for it in wrong if it.names not in both]
+    if any(it.code == NO_MANAGER.code for it in wrong):
+        remedy = _manager_hint(plan)
+        wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]
+    return [*as_the_vendor_has_it(plan, index(seen, by_plan), wrong, known)], seen
 
 
 def _launch_errors(
