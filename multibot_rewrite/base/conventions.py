@@ -36,7 +36,7 @@ _WHO = {"every": EVERY, "any": ANY, "some": SOME, "one": ONE}
 
 
 class SharedTopic(NamedTuple):
-    """A topic that all robots may share; a rewrite leaves a ``kept`` one unless told otherwise."""
+    """A topic that all robots may share; by default a rewrite leaves a ``kept`` one."""
 
     name: str
     senders: int

@@ -330,7 +330,7 @@ def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[
 
 
 def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]:
-    """Return pairs of robots whose affixes can make one name of two, with the separator.
+    """Return pairs of robots of which two names can become one, each with the separator.
 
     The name of one ends (begins) like the affix of the other: with a postfix, ``arm`` of ``left_b``
     and ``arm_left`` of ``b`` are both ``arm_left_b``."""

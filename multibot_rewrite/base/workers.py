@@ -36,7 +36,7 @@ class _Worker(NamedTuple):
 
 
 class WorkerPool(Generic[_Item, _Made]):
-    """Workers that run ``work``; ``lost`` makes the result for an item whose worker died."""
+    """Workers that run ``work``; ``lost`` returns the result for an item whose worker died."""
 
     def __init__(
         self,

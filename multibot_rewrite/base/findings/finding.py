@@ -239,7 +239,7 @@ class RulePage(NamedTuple):
     """The words and examples of a rule.
 
     ``bad`` has the finding exactly once, in line ``line``, and ``good`` has none; ``fixed`` is what the
-    fix makes of ``bad``, if there is one; ``beside`` are files by name."""
+    fix makes of ``bad``, if there is one; ``beside`` has the texts of files in its folder, by name."""
 
     what: str = ""
     why: str = ""

@@ -80,7 +80,7 @@ def check_node_name(name: str) -> NameFault | None:
 
 
 def _brace_or_letter_fault(name: str) -> NameFault | None:
-    """Return the fault of a name whose braces or letters are wrong, or None; ``~`` only leads."""
+    """Return the fault of a name with wrong braces or letters, or ``~`` within it; else None."""
     opened = -1
     for at, letter in enumerate(name):
         if opened >= 0:
