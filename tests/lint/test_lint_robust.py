@@ -21,7 +21,7 @@ from real_robots import spread
 from waiting import wait_until
 
 from multibot_rewrite.base import workers
-from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.findings.formats import FORMATS, Report, rendered
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.cli.urdf_lint import main
@@ -479,3 +479,11 @@ def test_of_the_corpus_neither(
         assert main([home, "--format", "json", "--output", target]) == 1
     one, four = ((tmp_path / jobs).read_bytes() for jobs in ("1", "4"))
     assert one == four
+
+
+def test_a_joint_to_itself_beside_another_is_one_error(tmp_path: Path) -> None:
+    """It makes no loop of two links, so the tree of the other joints is as it was."""
+    path = tmp_path / "a.urdf"
+    both = joint("j", "a", "b") + joint("k", "b", "b")
+    path.write_bytes(urdf('<link name="a"/><link name="b"/>' + both))
+    assert {it.code for it in lint_file(str(path), Settings()) if it.level == ERROR} == {"MB506"}

@@ -20,6 +20,7 @@ from multibot_rewrite.knowledge.records import (
     FrameParameter,
     NodeFacts,
     SentTransform,
+    Untold,
 )
 from multibot_rewrite.planning.of_runs import target_of
 from multibot_rewrite.planning.planned_system import expect
@@ -294,3 +295,11 @@ def test_a_component_is_loaded_with_its_name_namespace_and_rules() -> None:
     assert found["amcl"][:4] == ["-n", "amcl", "--node-namespace", "/robot1"]
     assert found["amcl"][4:] == ["-r", "/tf:=tf", "-r", "/tf_static:=tf_static"]
     assert found["nav2_container"][:3] == ["--ros-args", "-r", "__ns:=/robot1"]
+
+
+def test_a_node_says_what_its_source_leaves_open() -> None:
+    naming = make_naming(layout="both")
+    facts = [NodeFacts("n", "acme", (), untold=(Untold("a name of a topic"),))]
+    table = build_table(["robot1"], facts, naming, release=NEWEST_LTS)
+    (node,) = expect(table, naming, {"robot1": ["base_link"]}).nodes
+    assert node.untold == ("a name of a topic",)
