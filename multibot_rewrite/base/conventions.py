@@ -197,6 +197,7 @@ TEAMS = {name: tuple(nodes) for nodes, name in ROWS["teams"]}
 _CHOOSES = lazy_compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 
 
+@lru_cache(maxsize=4096)
 def team(node: str) -> str:
     """Return the node's name, or the name of the nodes that it takes turns with."""
     last = node.rpartition("/")[2]
