@@ -33,7 +33,7 @@ Hosts = Iterable[tuple[etree._Element, PluginDefinition]]
 
 
 def default_of(host: etree._Element, default: str, naming: Naming) -> str:
-    """Return what a plugin takes if the site is absent: a literal, or made from another topic."""
+    """Return the value that a plugin takes for an absent site: a literal, or from another topic."""
     conditions, asked, default = default.rpartition("?")
     if asked and not all(_condition_holds(host, condition) for condition in conditions.split(",")):
         return ""
@@ -60,6 +60,7 @@ def filled(host: etree._Element, default: str) -> str:
 
 
 def _own_name_for(host: etree._Element, word: str) -> str:
+    """Return the text for ``{word}`` in a default: model, sensor, first link, or a child's; or ""."""
     if word == "model":
         return MODEL[:-1]
     if word == "sensor":
