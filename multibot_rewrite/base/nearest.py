@@ -118,7 +118,7 @@ def extensions(word: str, choices: Iterable[str]) -> list[str]:
 
 
 def _hint(near: str) -> str:
-    """Return the question whether this name was meant; empty without one."""
+    """Return ``did you mean 'x'?`` for this name; empty without one."""
     return f"did you mean {near!r}?" if near else ""
 
 

@@ -70,7 +70,7 @@ def _component_class(base: Any) -> Any:
 
         @property
         def package(self) -> Any:
-            """Its package; launch_ros asks for it first of all that is a robot's."""
+            """The component's package; launch_ros asks for it before all else that is a robot's."""
             return [_made_text_class()(self._made)]
 
         def _made(self, context: Context) -> str:

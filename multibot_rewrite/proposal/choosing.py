@@ -99,7 +99,7 @@ def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
 
 
 def _bare_links(it: Looked) -> set[str]:
-    """Return its links without what a xacro puts in front for a robot."""
+    """Return a description's links without what a xacro puts in front for a robot."""
     return {name.rpartition("/")[2] for name in _link_names(it)}
 
 

@@ -167,7 +167,7 @@ def hundredths_known(robot: Looked, path: str) -> int:
 
 
 def own_names(robot: Looked) -> frozenset[str]:
-    """Return its links and joints: as they are, without what its arguments put in front, as written."""
+    """Return a robot's links and joints: as they are, without what arguments add, and as written."""
     made = frozenset(_expanded_names(robot))
     return made | _without_prefixes(robot, made) | _names_in(robot.path)
 

@@ -45,7 +45,7 @@ class Description(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Its path with its arguments, for messages."""
+        """The description's path with its arguments, for messages."""
         return " ".join((self.path, *(f"{name}:={it}" for name, it in self.arguments.items())))
 
     @property

@@ -375,7 +375,7 @@ def at_work(ends: Iterable[End]) -> list[End]:
 
 
 def sent_on(it: Index, topic: str) -> tuple[str, tuple[str, ...]]:
-    """Return the type of a topic, and the nodes that publish it and are no viewers; empty without."""
+    """Return (type of a topic, nodes that publish it and are no viewers); empty without."""
     ends = it.ends_at(TOPIC, topic)
     return ends.type, nodes_of(at_work(ends.publishers))
 

@@ -58,7 +58,7 @@ class WrongValue(Exception):
 
 
 def unexpected(expected: str, value: object) -> WrongValue:
-    """Return the error for a value where something else was expected."""
+    """Return the error for a value that is not what ``expected`` says."""
     return WrongValue(f"expected {expected}, not {shown(value)}")
 
 

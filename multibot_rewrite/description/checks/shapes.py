@@ -41,7 +41,7 @@ class Extent(NamedTuple):
 
     @property
     def middle(self) -> Vector:
-        """Its centre."""
+        """The centre of the box."""
         return scaled(plus(self.low, self.high), 0.5)
 
 

@@ -98,7 +98,7 @@ def sends_odometry(host: _Element, section: PluginDefinition) -> bool:
 
 
 def _switches(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, bool]]:
-    """Yield (parameter, topic, whether it is on) for each switch of a plugin's topics."""
+    """Yield (parameter, topic, is the switch on) for each switch of a plugin's topics."""
     for switch in section.switches:
         parameter, topic, *usual = switch.split("=")
         yield parameter, topic, is_on(child_text(host, parameter), usual=bool(usual))

@@ -97,7 +97,7 @@ class Argument(NamedTuple):
 
     @property
     def is_space(self) -> bool:
-        """Return whether it is every plugin's namespace, and in no other name. Raises nothing."""
+        """Return whether the argument is every plugin's namespace, and in no other name."""
         called = bool(self.uses) and _SPACE.fullmatch(self.name) is not None
         return called and all(
             (use.kind, use.how, use.names) == ("namespace", WHOLE, use.total) for use in self.uses

@@ -114,12 +114,12 @@ def _of_model(section: PluginDefinition) -> list[SiteRow]:
 # As sdformat reads booleans (Param.cc, ValueFromStringImpl): case and white space around do not
 # count, any other text leaves the default.
 def is_true(text: str) -> bool:
-    """Return whether this text of a parameter turns it on."""
+    """Return whether a text turns a parameter on."""
     return text.strip().lower() in ("true", "1")
 
 
 def is_false(text: str) -> bool:
-    """Return whether this text of a parameter turns it off."""
+    """Return whether a text turns a parameter off."""
     return text.strip().lower() in ("false", "0")
 
 

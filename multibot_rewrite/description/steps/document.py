@@ -73,7 +73,7 @@ def read_document(source: bytes, file: str, placed: bool = True) -> Document:
 
 
 def _parsed(source: bytes, file: str) -> tuple[etree._Element, bool]:
-    """Return the root of a text as TinyXML-2 reads it, and whether it had to be mended."""
+    """Return (root as TinyXML-2 reads the text, whether the text had to be mended)."""
     if not is_loose(source):
         with suppress(etree.XMLSyntaxError):
             return etree.fromstring(source, _PARSER), False

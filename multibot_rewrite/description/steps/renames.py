@@ -24,7 +24,7 @@ class RenameMap(NamedTuple):
     values: list[Spelling]
 
     def changes(self, kind: str, name: str) -> bool:
-        """Return whether this declared name changes."""
+        """Return whether a declared name changes."""
         return (kind, name, False) in self.affixes
 
     def spelled(self, robot: str, kind: str, name: str, namespaced: bool = False) -> str:

@@ -178,7 +178,7 @@ class _Given(NamedTuple):
 
 
 def _not_started(given: _Given) -> Iterator[tuple[str, str]]:
-    """Yield nodes that are not started, with the reason; empty if something else starts them."""
+    """Yield (node, reason) for nodes that are not started; empty if something else starts them."""
     naming, file = given.plan.fleet.naming, given.plan.file
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
     for name in given.names.started:
@@ -353,6 +353,7 @@ def _with_own_manager(
 
 
 def _renamed_word(word: str, verb: str, space: str, naming: Naming) -> str:
+    """Return a word of a ``ros2`` command; an absolute name of a node or topic is the robot's."""
     if not word.startswith("/") or check_topic_name(word):
         return word
     if verb in _OF_NODES:
@@ -451,7 +452,7 @@ def _publisher_parameters(given: _Given, name: str) -> Parameters:
 
 
 def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:
-    """Yield the parameter files of launch files, each with its nodes."""
+    """Yield (file, nodes) for the parameter files of launch files."""
     # Without nodes if it is for a spawner, or for a launch file that is missing.
     evidence = plan.evidence_of(robot)
     words = (
@@ -483,7 +484,7 @@ def _controller_types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
 
 
 def _managed(given: _Given, manager: str) -> Iterator[str]:
-    """Yield what a lifecycle manager's nodes are called; empty for one that the robot has not."""
+    """Yield the full names of a lifecycle manager's nodes; empty for one that the robot has not."""
     return (_own_node_name(given, it) for it in given.names.managed.get(manager, ()))
 
 

@@ -173,7 +173,7 @@ class Cache:
 
 
 def findings_from(value: Any) -> list[Finding] | None:
-    """Return the findings; None if none are kept, or it is something else."""
+    """Return the findings in a kept value; None if none are kept, or the value is no such one."""
     try:
         rows = value if value is None else list(map(Finding._make, value))
         return rows and [it._replace(edits=tuple(map(Edit._make, it.edits))) for it in rows]

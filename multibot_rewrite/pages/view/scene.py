@@ -195,7 +195,7 @@ def transform_of(edge: Edge) -> tuple[float, ...]:
 
 
 def _frames_below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
-    """Yield the frames below a root of which a pose was heard, each with it."""
+    """Yield the frames below a root whose poses were heard."""
     children = lists_by_key((it.parent, it) for it in above.values())
     todo = [root]
     for name in todo:  # grows

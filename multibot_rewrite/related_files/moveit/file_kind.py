@@ -88,7 +88,7 @@ def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node
 
 
 def is_merge(key: yaml.Node) -> bool:
-    """Return whether this is YAML's merge key ``<<``."""
+    """Return whether a key is YAML's merge key ``<<``."""
     return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
 
 

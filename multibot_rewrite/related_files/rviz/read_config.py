@@ -246,7 +246,7 @@ class RvizRobot(NamedTuple):
 
 
 def is_name(site: Site) -> bool:
-    """Return whether this place holds a name. Blocks of text do not."""
+    """Return whether a site holds a name. Blocks of text do not."""
     return site.kind in NAMED and not site.slot.is_block
 
 
