@@ -194,7 +194,6 @@ def as_json(section: PluginDefinition) -> dict[str, object]:
 
 
 def _row_json(site: SiteRow, section: PluginDefinition) -> dict[str, object]:
-    """Return a row of a section as ``--output-kind json`` writes it."""
     return {
         "path": site.path,
         "role": site.role,

@@ -36,7 +36,6 @@ def to_json(system: System) -> bytes:
 
 
 def _json_text(value: Any) -> str:
-    """Return a value as JSON; of records each is on a line of its own."""
     if has_rows(value):
         lines = (json.dumps(plain_value(it), ensure_ascii=False) for it in value)
         return "[\n  " + ",\n  ".join(lines) + "\n ]"

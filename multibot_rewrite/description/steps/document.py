@@ -58,9 +58,7 @@ class Document(NamedTuple):
 
 
 def read_document(source: bytes, file: str, placed: bool = True) -> Document:
-    """Return the parsed document; raises InputError with place, cause and remedy.
-
-    Without ``placed`` elements are numbered and not looked for in the bytes."""
+    """Return the parsed document; raises InputError. Not ``placed``: elements have no offsets."""
     _refuse_unreadable_bytes(source, file)
     root, is_mended = _parsed(source, file)
     elements = list(root.iter("*"))

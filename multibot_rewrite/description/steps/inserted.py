@@ -158,7 +158,6 @@ def removals(document: Document, robot: str) -> list[Edit]:
 def _removal_edits(
     document: Document, marker: Marker, starts: dict[etree._Element, int]
 ) -> Iterator[Edit]:
-    """Yield the edits that take out what a marker's comment says was inserted."""
     source = document.source
     parent = marker.comment.getparent()
     inserted = list(marker.comment.itersiblings("*"))[: marker.elements]

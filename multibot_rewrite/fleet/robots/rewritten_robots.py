@@ -138,7 +138,6 @@ def read_jobs(
 
     @cache
     def read_in(source: str, urdf: str | None, file: str) -> Reader:
-        """Return the reader of a description, made once."""
         return reader(source, naming, urdf, tuple(definitions), file, trust, release)
 
     def read(robot: RobotSpec, path: str, urdf: str = "") -> Reader:
@@ -213,7 +212,6 @@ def _names_simulator(it: RewrittenRobot) -> bool:
 
 
 def _rewritten_group(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
-    """Yield the robots of one description, rewritten with their SRDF and model."""
     naming, own = jobs.description.naming, jobs.description.own.plain
     if jobs.srdf:
         own = {**jobs.srdf.own.plain, **own}

@@ -389,7 +389,6 @@ def apart(
 
 
 def _runs_once(name: str, once: bool, file: FleetFile) -> bool:
-    """Return whether one node of this name serves all robots, by the fleet file or by ``once``."""
     return (once or name in file.shared_nodes) and name not in file.own_nodes
 
 

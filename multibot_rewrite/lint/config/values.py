@@ -64,7 +64,6 @@ def find_lint_codes(words: Sequence[str], where: str) -> tuple[str, ...]:
 
 
 def _levels_by_code(given: KeyValue) -> dict[str, str]:
-    """Return the level set for each code; raises UsageError for an unknown one."""
     levels = {}
     for word, it in _table_of(given):
         (code,) = find_lint_codes((word,), given.where)

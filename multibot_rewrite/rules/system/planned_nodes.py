@@ -82,7 +82,6 @@ def is_absent(plan: Index, seen: Index, robot: str) -> bool:
 
 
 def _is_missing(plan: Index, seen: Index, robot: Robot) -> bool:
-    """Return whether no node of a robot runs, and some are planned."""
     return is_absent(plan, seen, robot.name) and bool(_missing_nodes(plan, seen, robot))
 
 

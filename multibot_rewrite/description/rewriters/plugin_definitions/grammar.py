@@ -173,7 +173,6 @@ def assemble(
     below = settings.get("model_namespace", "")
 
     def words(key: str) -> tuple[str, ...]:
-        """Return the words of a setting; none if it is missing."""
         return tuple(settings.get(key, "").split())
 
     return PluginDefinition(
@@ -279,7 +278,6 @@ def _no_releases(words: str) -> str:
 
 
 def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
-    """Raise DefinitionsError for an unknown kind, option or form."""
     kinds = list(kinds)
     if not kinds:
         raise DefinitionsError(f"{place}: {path} has no kind, use one of {', '.join(KINDS)}")

@@ -57,7 +57,6 @@ def wheel_size(subject: Subject) -> Iterator[Problem]:
 
 
 def _size_problem(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
-    """Return the problem of a drive's size that differs from the measured one."""
     element = drive.sizes[name]
     said = "" if element is not None else "not said, and "
     apart = " apart" if "sep" in name.lower() else ""

@@ -229,10 +229,8 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB242", "nothing-to-control", ERROR)
 def nothing_to_control(subject: Subject) -> Iterator[Problem]:
-    """Report plugins of the two simulators in a whole description without a system.
-
-    Source: component_parser.cpp throws; gz_ros2_control_plugin.cpp, gazebo_ros2_control_plugin.cpp
-    catch it."""
+    """Report plugins of the two simulators in a whole description without a system."""
+    # component_parser.cpp throws; gz_ros2_control_plugin.cpp, gazebo_ros2_control_plugin.cpp catch it.
     if not subject.robot.links or subject.elements.every("ros2_control"):
         return
     for plugin in manager_plugins(subject):

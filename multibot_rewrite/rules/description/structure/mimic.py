@@ -228,7 +228,6 @@ def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _inverted_bounds(interface: _Element) -> Iterator[Problem]:
-    """Yield a problem if an interface's min is above its max."""
     params = {it.get("name"): it for it in interface.iterchildren("param")}
     found = {name: number(text_of(params[name])) for name in ("min", "max") if name in params}
     low, high = found.get("min"), found.get("max")
