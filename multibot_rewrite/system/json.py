@@ -125,7 +125,7 @@ def json_value(data: bytes, file: str) -> object:
     except UnicodeDecodeError:
         raise InputError(f"{file}: not valid JSON: it is not UTF-8; {REMEDY}") from None
     except ValueError as error:
-        raise InputError(f"{file}: cannot be read as JSON: {error}") from None
+        raise InputError(f"{file}: cannot be read as JSON: {error}; {REMEDY}") from None
 
 
 def _record_or_object(value: dict[str, object]) -> object:

@@ -375,7 +375,7 @@ def test_what_the_check_ignores_is_not_learned_unless_asked_for_by_name(tool: st
     [
         (["/drivr"], "/", "/drivr: no node has this name; running are /driver"),
         (["/zzz"], "/", "/zzz: no node has this name; running are /driver, /r1/planner"),
-        (["/driver"], "/r1", "/driver: the node is not below --namespace /r1"),
+        (["/driver"], "/r1", "/driver: it is not below --namespace /r1"),
         ([], "/r2", "there is no node to learn below /r2; running are"),
         ([], "/r 2", "namespace '/r 2': character 3, ' ', is not a letter"),
         (["/twin"], "/", "/twin: 2 nodes have this name; stop all but one"),

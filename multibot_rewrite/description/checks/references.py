@@ -134,7 +134,7 @@ def ambiguous(inventory: Inventory) -> Iterator[Problem]:
     for claim in inventory.claims if both else ():
         if claim.site.kinds == ("link", "joint") and claim.value in both:
             message = f"{claim.value!r} is both a link and a joint"
-            hint = "a rewrite takes it for the link; SDF refuses such a pair"
+            hint = "rename one: SDF refuses such a pair, a rewrite takes it for the link"
             yield about(claim, "MB203", message, hint)
 
 

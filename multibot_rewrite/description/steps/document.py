@@ -142,7 +142,7 @@ def _refuse_wide(document: Document) -> None:
         count = len(elements[at].attrib) + source.count(b" xmlns:", start, tag_end(source, start))
         if count > MAX_ATTRIBUTES:
             line, column = locate(source, start)
-            what = f"an element has {count:,} attributes, over the limit of {MAX_ATTRIBUTES:,}"
+            what = f"an element has {count:,} attributes, over {MAX_ATTRIBUTES:,}; leave some out"
             raise InputError(f"{file}:{line}:{column}: {what}")
 
 

@@ -136,7 +136,7 @@ def _read_marker(document: Document, comment: etree._Element, words: list[str]) 
     filled = rest[1:] if rest[:1] == ["filled"] else []
     known = rest in ([], ["expanded"]) or (filled and all(map(is_step, filled)))
     if not number[1:].isdigit() or not known:
-        raise InputError(f"{document.file}:{comment.sourceline}:1: this marker was edited by hand")
+        raise InputError(f"{document.file}:{comment.sourceline}:1: this marker was edited, undo it")
     return Marker(comment, robot, int(number[1:]), rest == ["expanded"], tuple(filled))
 
 

@@ -75,7 +75,7 @@ def _wheel_faults(subject: Subject, section: Section) -> list[Finding] | None:
         return None
     node = values[_RIGHT].node
     rolling = rolling_faults(subject.robot, left[0], right[0])
-    hint = "the controller takes them for wheels that roll"
+    hint = "correct it in the description, or name the wheels that roll"
     return [
         *_size_faults(subject, values, left, right),
         *_axis_faults(node, left, right),

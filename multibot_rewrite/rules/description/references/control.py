@@ -283,4 +283,4 @@ def interface_not_simulated(subject: Subject) -> Iterator[Problem]:
                 known = name in simulator.takes or not name or slip_of(name, STANDARD) != ""
                 if not known or name == "acceleration":
                     message = f"{text_of(plugin)} exports no command interface {name!r}"
-                    yield Problem(it, message, "name", f"it knows {', '.join(simulator.takes)}")
+                    yield Problem(it, message, "name", f"use one of {', '.join(simulator.takes)}")

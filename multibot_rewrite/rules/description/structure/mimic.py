@@ -245,7 +245,7 @@ def _beyond_limits(joint: Joint, interface: _Element, low: float, high: float) -
         if not low * _SLACK - 0.01 <= value <= high * _SLACK + 0.01:
             name = interface.get("name")
             message = f"{param.get('name')} of {name} of joint {joint.name!r} is {value:g}"
-            hint = f"its <limit> is {low:g} to {high:g}"
+            hint = f"stay in its <limit>: {low:g} to {high:g}"
             yield Problem(param, message, "", hint, level="" if name == "position" else NOTE)
 
 
