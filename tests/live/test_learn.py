@@ -396,9 +396,9 @@ def test_nodes_that_cannot_be_learned(names: list[str], namespace: str, said: st
         ((TOPIC, PUBLISHES, "/a b", TEXT), "topic name '/a b' in the graph: character 3"),
         (
             (SERVICE, PUBLISHES, "/x", TRIGGER),
-            "/driver publishes the service /x, which is not possible",
+            "/driver publishes the service /x, which ROS has not",
         ),
-        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which is not possible"),
+        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which ROS has not"),
     ],
 )
 def test_an_endpoint_that_no_node_can_have(end: tuple[str, str, str, str], said: str) -> None:
@@ -503,7 +503,7 @@ def test_helpers_without_a_node_are_reported(
         (["--domain", "5"], "--domain is for the live graph, leave out --from"),
         (["--node"], "argument --node: expected one argument"),
         (["--node", "/driver", "/eye"], "unexpected /eye; a list is written A,B"),
-        (["-o", "/dev/null/mine.yaml"], "/dev/null is a file, not a folder"),
+        (["-o", "/dev/null/mine.yaml"], "/dev/null is a file; name another folder"),
     ],
 )
 def test_wrong_use_is_one_line(
