@@ -172,7 +172,7 @@ def since_version(words: str, release: str) -> str:
 
 
 def is_release_words(words: str) -> bool:
-    """Return whether these are release words, as above."""
+    """Return whether a text is release words, as ``has_release`` takes."""
     try:
         found = list(_terms(words))
     except UsageError:

@@ -317,6 +317,7 @@ def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
 
 
 def _start_differences(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:
+    """Yield a message for each printed command that differs from the planned process."""
     wanted = [Action("Node", keywords(_as_commanded(it))) for it in planned]
     given = [Action("Node", keywords(it)) for it in printed]
     yield from (it.message for it in _differences(wanted, given))
@@ -388,7 +389,7 @@ def _first_difference(planned: Any, printed: Any, where: str = "") -> tuple[str,
     # It differs for values of other types, which are equal.
     if repr(planned) == repr(printed):
         return None
-    if type(planned) is not type(printed) or not _is_deep(planned):
+    if type(planned) is not type(printed) or not _is_dict_or_list(planned):
         return where, planned, printed
     if isinstance(planned, dict):
         keys = dict.fromkeys((*planned, *printed))
@@ -400,7 +401,7 @@ def _first_difference(planned: Any, printed: Any, where: str = "") -> tuple[str,
     return next(filter(None, (_first_difference(one, other, at) for at, one, other in every)), None)
 
 
-def _is_deep(it: Any) -> bool:
+def _is_dict_or_list(it: Any) -> bool:
     return isinstance(it, dict | list)
 
 

@@ -122,6 +122,7 @@ def _known_hashes(folder: str) -> dict[str, str]:
 
 
 def _manifest_hashes(folder: str, name: str) -> dict[str, str]:
+    """Return the hash of each file that a manifest lists, and its own; empty without a manifest."""
     path = os.path.join(folder, name)
     if not os.path.exists(path):
         return {}
@@ -135,6 +136,7 @@ def _existing_hashes(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
 
 
 def _report_stale(options: argparse.Namespace, found: OutputChanges) -> int:
+    """Print the files that differ from a new build; return the exit code."""
     lines = [
         *(f"{path}: stale" for path in found.write),
         *(f"{it}: left over" for it in found.remove),

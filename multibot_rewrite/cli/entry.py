@@ -30,6 +30,7 @@ def urdf_lint() -> int:
 
 
 def _run(name: str) -> int:
+    """Run the ``main`` of a module of commands; return the exit code."""
     if _signal.getsignal(_signal.SIGINT) is _signal.default_int_handler:
         _signal.signal(_signal.SIGINT, _signal.SIG_DFL)
     gc.disable()

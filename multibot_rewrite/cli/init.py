@@ -255,6 +255,7 @@ def _ask_which(
 
 
 def _with_count(wanted: Wanted) -> Wanted:
+    """Return ``wanted`` with the number of robots of each description, asked for if it has none."""
     if wanted.each:
         return wanted
     return wanted._replace(each=int(_ask_until_valid("Robots of each description", "2", _is_count)))

@@ -157,6 +157,7 @@ def details(sections: Sequence[PluginDefinition]) -> Iterator[str | Grid]:
 
 
 def _site_row(site: SiteRow, section: PluginDefinition) -> tuple[str, ...]:
+    """Return a row of the table: path, role, kinds, form, default, note, place."""
     not_inserted = " (not inserted)" if site.default and not section.inserts else ""
     block = block_of(site)
     shared = f" [block {block}]" if block else ""
@@ -193,6 +194,7 @@ def as_json(section: PluginDefinition) -> dict[str, object]:
 
 
 def _row_json(site: SiteRow, section: PluginDefinition) -> dict[str, object]:
+    """Return a row of a section as ``--output-kind json`` writes it."""
     return {
         "path": site.path,
         "role": site.role,

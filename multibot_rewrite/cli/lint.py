@@ -103,6 +103,7 @@ def _files_to_lint(
     refused: list[Finding] = []
 
     def refuse(error: OSError) -> None:
+        """Note a finding for a folder that cannot be read."""
         from multibot_rewrite.lint.registry import RULES
 
         level = RULES["MB102"].level
@@ -147,6 +148,7 @@ def _check_shared(
     from multibot_rewrite.cli.rewrite_use import check_shared  # few ask for it
 
     def linted(naming: Mapping[str, Any]) -> list[Finding]:
+        """Return the findings with these options of naming in place of the given ones."""
         changed = with_options(configured_alone, **{**given(options), **naming})
         return lint_files(paths, settings._replace(naming=changed.settings.naming))
 

@@ -164,7 +164,7 @@ def deliver(
     target = options.input if options.in_place else options.output
     if target:
         files = ((target_path(target, robot), data) for robot, _, data in results)
-        every = files if options.in_place else map(_no_link, files)
+        every = files if options.in_place else map(_unless_link, files)
         write_files(options, watched(every, total, "writing"))
         return
     colour = prints_colour(options)
@@ -174,7 +174,7 @@ def deliver(
         print_bytes(text)
 
 
-def _no_link(item: tuple[str, bytes]) -> tuple[str, bytes]:
+def _unless_link(item: tuple[str, bytes]) -> tuple[str, bytes]:
     check_link(item[0])
     return item
 

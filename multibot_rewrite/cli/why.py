@@ -33,6 +33,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _file_and_line(text: str) -> tuple[str, int]:
+    """Return path and line of ``FILE:LINE``; raises UsageError for another text."""
     path, colon, line = text.rpartition(":")
     if not colon or not line.isdigit() or not path:
         raise UsageError(f"--why {text}: write FILE:LINE, for example rover.urdf:34")

@@ -72,6 +72,7 @@ def _carry(context: Context) -> None:
     register = context.register_event_handler
 
     def registered(event_handler: Any, *more: Any, **options: Any) -> None:
+        """Register an event handler that starts its actions for the current robot."""
         group = here(context)
         if any(group) and not _is_of_timers(event_handler):
             event_handler.handle = _handler_for_group(event_handler.handle, group)
@@ -81,6 +82,8 @@ def _carry(context: Context) -> None:
 
 
 def _handler_for_group(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
+    """Return an event handler that first sets fleet and robot of ``group``."""
+
     def handled(event: Any, context: Context) -> Any:
         # launch drops the locals when it has visited what this returns.
         entered(context, group)
@@ -90,7 +93,7 @@ def _handler_for_group(handle: Callable[..., Any], group: Here) -> Callable[...,
 
 
 def _is_of_timers(handler: Any) -> bool:
-    """Return whether it is the one handler for all timers of a launch, which keep locals."""
+    """Return whether a handler is the one for all timers of a launch, which keep locals."""
     event = of_launch("events").TimerEvent(timer_action=None)
     return type(handler).__name__ == "EventHandler" and bool(handler.matches(event))
 
@@ -187,6 +190,7 @@ def listed(context: Context, names: Text) -> list[str]:
 
 
 def _launch_argument(context: Context, key: str, what: str) -> str:
+    """Return the value of a launch argument; raises UsageError if it is not set."""
     if key not in context.launch_configurations:
         hint = f"set {what}, or put it into multibot_robots or each_robot"
         raise UsageError(f"no {what} is given; {hint}")

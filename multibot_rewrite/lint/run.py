@@ -98,6 +98,7 @@ def _settings_of_files(paths: Sequence[str], settings: Settings) -> tuple[Settin
     from multibot_rewrite.base.workers import limit_time, worker_pool
 
     def within(_: str) -> tuple[Settings, Asked | None]:
+        """Return the settings, and what making them asked of the disk."""
         limit_time(settings.seconds)
         return look()
 
@@ -118,10 +119,12 @@ def _linted(paths: Sequence[str], settings: Settings, jobs: int, watch: Watch) -
     from multibot_rewrite.lint.failures import lost, too_long
 
     def lint(path: str) -> Linted:
+        """Return the findings of a file, and what the lint asked of the disk."""
         limit_time(settings.seconds + GRACE)
         return recorded(partial(lint_file, path, settings))
 
     def unfinished(path: str, died_of: int) -> Linted:
+        """Return the finding for a file whose worker died."""
         if died_of == signal.SIGXCPU:
             return [too_long(path, settings.seconds)], None
         return [lost(path, died_of)], None

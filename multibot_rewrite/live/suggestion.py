@@ -35,7 +35,7 @@ HEAD = """\
 
 
 def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
-    """Return the files by name."""
+    """Return a first fleet file, and the files that it names, as texts by file name."""
     robot, *_ = robots_to_plan(seen)
     # The nodes of the first robot, as far as their names show the code's: not behind a word.
     mine, above = "" if robot is NAMELESS else robot.name, f"{robot.namespace}/"
@@ -56,6 +56,7 @@ def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
 
 
 def _fleet_lines(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str]:
+    """Yield the lines of a first fleet file."""
     robots = robots_to_plan(seen)
     namespaced = any(robot.namespace for robot in robots)
     fallback = LAYOUTS[0] if namespaced else LAYOUTS[-1]

@@ -55,6 +55,7 @@ def expect(
     usual = dict.fromkeys((*(it for it in defaults if it and "<" not in it), *USUAL_FRAMES))
 
     def robot(name: str) -> Robot:
+        """Return the record of a robot: its names, frames and tf topic."""
         word, own = words.get(name, name), tuple(frames.get(name, ()))
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         known = {*own, *naming.shared_frames}
@@ -135,7 +136,7 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
 
 
 def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:
-    """Return by robot patterns of the nodes that its nodes make for themselves, or ``always`` make."""
+    """Return by robot the full names, as patterns, of nodes that its nodes make for themselves."""
     found: dict[str, tuple[str, ...]] = {}
     each = ((run, end) for run in table.runs for end, _ in run.names if end.by)
     for run, end in (it for it in each if not (always and it[1].when)):

@@ -90,6 +90,7 @@ def _with_rules_of_process(it: Delivery, standing: _Standing) -> Run:
 
 
 def _with_process_rules(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
+    """Return the node with its own rules, and those of its process."""
     return run._replace(rules=rules, process_namespace=namespace, process_rules=wide)
 
 
@@ -262,7 +263,7 @@ def useless_rules(
 
 @cache
 def _names_of_managers(release: str) -> frozenset[str]:
-    """Return the code's names of managers in all releases, and of controllers with their rules."""
+    """Return the topics in the code of controller managers and of controllers known in a release."""
     handed_on = controller_way(release).of_manager
     every = every_release().nodes.values()
     nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]

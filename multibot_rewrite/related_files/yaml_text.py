@@ -43,7 +43,7 @@ class Splice(NamedTuple):
 
 
 def read_yaml(data: bytes, file: str) -> YamlText:
-    """Parse one document; raises InputError with place, cause and remedy."""
+    """Return the one document of a text; raises InputError with place, cause and remedy."""
     if len(data) > MAX_BYTES:
         raise InputError(f"{file}: {len(data):,} bytes, over the limit of {MAX_BYTES:,}; split it")
     try:
@@ -57,7 +57,7 @@ def read_yaml(data: bytes, file: str) -> YamlText:
 
 
 def anchors(document: YamlText) -> Iterator[tuple[int, str]]:
-    """Yield line and text of anchors and aliases, which rcl_yaml_param_parser rejects."""
+    """Yield (line, text) of anchors and aliases, which rcl_yaml_param_parser rejects."""
     if not _ANCHOR.search(document.text):
         return
     for token in yaml.scan(document.text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
@@ -79,7 +79,7 @@ def refused(document: YamlText, node: yaml.Node, what: str, cause: str = "") -> 
 
 
 def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
-    """Return keys and values of a mapping, repeated keys included; empty for any other node."""
+    """Return (key, value) of a mapping, repeated keys included; empty for any other node."""
     if not isinstance(node, yaml.MappingNode):
         return []
     return [(key, value) for key, value in node.value if isinstance(key, yaml.ScalarNode)]
@@ -173,7 +173,7 @@ class Block(NamedTuple):
 
 
 def is_block(node: yaml.Node | None) -> bool:
-    """Return whether it is a list or map in block style, without brackets or braces."""
+    """Return whether a node is a list or map in block style, without brackets or braces."""
     return isinstance(node, yaml.CollectionNode) and not node.flow_style
 
 

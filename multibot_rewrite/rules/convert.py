@@ -82,6 +82,7 @@ def revalued(text: Spanned, element: _Element, name: str, value: str) -> Edit | 
 
 
 def _attribute_span(text: Spanned, element: _Element, name: str) -> tuple[int, int] | None:
+    """Return start and end of an attribute's value; None where it is not found."""
     return attribute_slot(text.source, text.starts[element], name, element.get(name, ""))
 
 
@@ -204,7 +205,7 @@ def ends_of(pose: poses.Pose, length: float) -> tuple[Vector, Vector]:
 
 
 def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) -> bool:
-    """Return whether it is a shape and nothing else: nobody may use this collision's name."""
+    """Return whether a capsule's holder is a shape and nothing else, so that it can be replaced."""
     asked = f"{link.get('name')}_collision".encode() in text.source or holder.get("name")
     if holder.tag == "collision" and asked:
         return False
@@ -218,6 +219,7 @@ def _pose_of(holder: _Element) -> poses.Pose | None:
 
 
 def _cylinder_edits(text: Spanned, shape: _Element) -> Iterator[Edit]:
+    """Yield the edits that make a capsule's element a cylinder."""
     start = text.starts[shape] + 1
     yield Edit(start, start + len(CAPSULE), CYLINDER, None)
     if closed := _CLOSED.match(text.source, tag_end(text.source, start - 1)):
@@ -225,6 +227,7 @@ def _cylinder_edits(text: Spanned, shape: _Element) -> Iterator[Edit]:
 
 
 def _sphere_texts(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
+    """Yield the texts of two spheres for the ends of a capsule."""
     pose, length = _pose_of(holder), number(shape.get("length"))
     spans = ((text.starts[it], end_of(text, it)) for it in holder.iterchildren("material"))
     material = b"".join(text.source[start:end] for start, end in spans)

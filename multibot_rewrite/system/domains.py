@@ -47,6 +47,7 @@ def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
     theirs = lists_by_key((it.node, robot(it.name)) for it in seen.ends)
 
     def domain(node: str) -> int:
+        """Return the domain of a node."""
         if node in planned:
             return numbers[planned[node]]
         number = numbers[robot(node) or only(unique(filter(None, theirs[node])))]
@@ -80,6 +81,7 @@ def _part_of_domain(system: System, own: Mapping[str, int], at: int) -> System:
 
 
 def _of_domain(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
+    """Return the plan of one domain: its nodes, robots, topics and transforms."""
     part, robot = _part_of_domain(plan, own, at), whose_by_plan(plan).robot
     nodes = {it.name for it in part.nodes}
     return part._replace(
@@ -133,4 +135,5 @@ def unnamed(it: Finding) -> Finding:
 
 
 def _with_domain_last(text: str) -> str:
+    """Return a text with ``NAME of domain 11`` where it has the name for that domain."""
     return _SHORT.sub(r"domain \1", _FULL.sub(r"\2 of domain \1", text))

@@ -36,6 +36,7 @@ def to_json(system: System) -> bytes:
 
 
 def _json_text(value: Any) -> str:
+    """Return a value as JSON; of records each is on a line of its own."""
     if has_rows(value):
         lines = (json.dumps(plain_value(it), ensure_ascii=False) for it in value)
         return "[\n  " + ",\n  ".join(lines) + "\n ]"
@@ -92,12 +93,12 @@ def is_json(data: bytes) -> bool:
 
 
 def read_system(data: bytes, file: str) -> System:
-    """Read a system from YAML or JSON; raises InputError with file, key, fault and remedy."""
+    """Return the system in YAML or JSON; raises InputError with file, key, fault and remedy."""
     return from_json(data, file) if is_json(data) else from_yaml(data, file)
 
 
 def from_yaml(data: bytes, file: str) -> System:
-    """Read what ``to_yaml`` wrote; raises as ``read_system``."""
+    """Return the system that ``to_yaml`` wrote; raises as ``read_system``."""
     try:
         with gc_paused():
             return from_value(load_yaml(data.decode("utf-8-sig"), file, REMEDY), file)
@@ -106,7 +107,7 @@ def from_yaml(data: bytes, file: str) -> System:
 
 
 def from_json(data: bytes, file: str) -> System:
-    """Read what ``to_json`` wrote; raises as ``read_system``."""
+    """Return the system that ``to_json`` wrote; raises as ``read_system``."""
     with gc_paused():
         return from_value(json_value(data, file), file)
 

@@ -126,6 +126,7 @@ def _merged_ends(looks: Sequence[Sequence[End]]) -> list[End]:
 
 
 def _amount_of_detail(ends: Sequence[End]) -> tuple[int, int, int]:
+    """Return how many ends have a QoS, how many a hash, and how many there are: a sort key."""
     known = sum(end.qos is not None for end in ends)
     return known, sum(bool(end.type_hash) for end in ends), len(ends)
 
@@ -147,6 +148,7 @@ def _merged_edges(frames: Iterable[Edge]) -> Iterator[Edge]:
 def _merged_environment(
     looks: Sequence[Look], nodes: Sequence[Node], endpoints: Sequence[End]
 ) -> Environment:
+    """Return the settings and limitations of several snapshots as one."""
     around = [look.snapshot.environment for look in looks]
     asked = around[0]
     peers = dict.fromkeys(peer for one in around for peer in one.static_peers)

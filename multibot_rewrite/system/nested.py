@@ -95,7 +95,7 @@ def _parameter_values(own: Sequence[Parameter]) -> dict[str, object]:
 
 
 def _is_plain(value: object) -> bool:
-    """Return whether it is a text, number or bool, or a list of these."""
+    """Return whether a value is a text, number or bool, or a list of these."""
     items = value if isinstance(value, list) else [value]
     return all(isinstance(it, bool | int | float | str) for it in items)
 
@@ -135,12 +135,13 @@ def _read_below(key: str, read: Reader, values: object) -> Any:
 
 
 def _pop_list(value: object, key: str) -> Any:
-    """Take what is below a key out of a value, and return it; a user may have left the key alone."""
+    """Return what is below a key, taken out of the value; empty where there is nothing."""
     found = value.pop(key, None) if isinstance(value, dict) else None
     return () if found is None else found
 
 
 def _read_robot(found: Mapping[str, list[Any]], value: object) -> None:
+    """Add a robot's value, and the nodes below it, to the records that are ``found``."""
     nodes = _pop_list(value, "nodes")
     robot = reader(Robot)(value)
     found["robots"].append(robot)
@@ -148,6 +149,7 @@ def _read_robot(found: Mapping[str, list[Any]], value: object) -> None:
 
 
 def _read_node(found: Mapping[str, list[Any]], robot: str, value: object) -> None:
+    """Add a node's value, its ends and parameters, to the records that are ``found``."""
     ends, parameters = _pop_list(value, "ends"), _pop_list(value, "parameters")
     node = reader(Node)(value)
     found["nodes"].append(node if node.robot or not robot else node._replace(robot=robot))

@@ -78,6 +78,7 @@ def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Pro
 
 
 def _undeclared_code(site: SiteRow, part: NamePart) -> str:
+    """Return the code of the rule for an undeclared name at a site."""
     if site.form in ("scoped", "member"):
         return "MB219"  # Only SDF has scopes.
     other = JOINT if part.kinds[0] == "joint" else _LINK
@@ -88,7 +89,7 @@ def _undeclared_code(site: SiteRow, part: NamePart) -> str:
 
 
 def where(claim: Claim) -> str:
-    """Return ``<tag>`` or ``tag@attribute``; that of a parameter has its name."""
+    """Return a claim's place, ``<tag>`` or ``tag@attribute``; a parameter's with its name."""
     tag = str(claim.element.tag)
     if claim.attribute:
         return f"{tag}@{claim.attribute}"

@@ -77,7 +77,7 @@ class Frames(NamedTuple):
         return placed(self.pose(base, (*below, name)), written_pose(written))
 
     def _attached_to(self, it: Named) -> str:
-        """Return the name of what it moves with: a joint's child, or ``attached_to``."""
+        """Return what a joint or frame moves with: a joint's child, or ``attached_to``."""
         if it.tag == "joint":
             return it.text("child")
         return it.element.get("attached_to", "") or MODEL

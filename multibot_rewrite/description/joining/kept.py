@@ -53,12 +53,12 @@ class KeptText(NamedTuple):
 
 
 def is_joined(text: bytes) -> bool:
-    """Return whether it has a comment of a join."""
+    """Return whether a text has a comment of a join."""
     return _OURS.search(text) is not None
 
 
 def is_joined_whole(text: bytes) -> bool:
-    """Return whether it is the result of a join."""
+    """Return whether a text is the result of a join."""
     return _BASE.search(text) is not None
 
 
@@ -68,7 +68,7 @@ def without_marks(text: bytes) -> bytes:
 
 
 def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
-    """Return the edit that replaces ``old`` by ``new``, and keeps ``old`` in a comment."""
+    """Return the edit that puts ``new`` between two offsets, and keeps ``old`` in a comment."""
     kept = b"<!-- multibot was %d %s -->" % (bool(new), _escaped(old))
     return Edit(start, end, kept + new, None)
 

@@ -122,7 +122,7 @@ def xml_text(root: _Element) -> bytes:
 
 
 def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[tuple[str, str]]:
-    """Yield pairs of links of two parts with nothing that has a shape between them."""
+    """Yield pairs of links of two parts that touch by links without shapes alone."""
     joints = described.iterchildren("joint")
     ends = [(end_of(it, "parent"), end_of(it, "child")) for it in joints]
     beside = sets_by_key((*ends, *((child, parent) for parent, child in ends)))

@@ -210,7 +210,7 @@ def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
 
 
 def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, RuntimeName]]:
-    """Yield each end that lost the topic of the first end, with that one, as they are now."""
+    """Yield (end, first end) where both had one topic before, and have two now."""
     now = _by_place((*after.names, *after.other_ends))
     was = _by_place((*before.names, *before.other_ends))
     of_topic = lists_by_key(((it.kind, it.name), at) for at, it in was.items() if at in now)
@@ -220,7 +220,7 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
 
 
 def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str, str]]:
-    """Yield each image that lost its camera_info, with the wanted name and the present one."""
+    """Yield (image, wanted name, present name) of each image that lost its camera_info."""
     # A viewer replaces the last segment of an image's topic (image_common camera_common.cpp
     # getCameraInfoTopic; RViz and image_pipeline subscribe with it).
     now = _by_place(after.names)
@@ -242,6 +242,7 @@ def _camera_info_topic(topic: str) -> str:
 
 
 def _by_place(names: Iterable[RuntimeName]) -> Mapping[Place, RuntimeName]:
+    """Return topics and services by their place: element, path, kind, and a count of equal ones."""
     found: dict[Place, RuntimeName] = {}
     seen: Counter[tuple[str, int, str, str]] = Counter()
     for it in names:

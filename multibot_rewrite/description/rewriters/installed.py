@@ -81,6 +81,7 @@ def _key(name: str) -> str:
 
 
 def _entry_points_bytes(folder: str) -> bytes:
+    """Return the bytes of a distribution's entry_points.txt; none if it cannot be read."""
     path = f"{folder}/entry_points.txt"
     if not os.access(path, os.R_OK):
         return b""  # as most packages, of which there may be hundreds: an error would take longer

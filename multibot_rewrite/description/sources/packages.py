@@ -69,6 +69,7 @@ def is_for_ros_1(file: str) -> bool:
 def _candidate_folders(
     name: str, here: str, roots: tuple[str, ...], prefixes: tuple[str, ...]
 ) -> tuple[str, ...]:
+    """Return the folders that may be a package: the file's own, below the roots, installed."""
     own = _own_package(here)
     found = [own[1]] if own is not None and own[0] == name else []
     shares = (os.path.join(prefix, "share", name) for prefix in prefixes)
@@ -116,7 +117,7 @@ def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
 
 
 def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
-    """Yield folders breadth first, each with whether it is a package, where the search ends."""
+    """Yield (folder, whether it is a package) breadth first; nothing below a package."""
     waiting = deque((os.path.abspath(root), 0) for root in roots)
     for _ in range(MOST_FOLDERS):
         if not waiting:
@@ -210,7 +211,7 @@ def in_sources(path: str) -> str:
 
 @lru_cache(maxsize=64)
 def _installed(folder: str) -> tuple[tuple[str, str], ...]:
-    """Return the files and folders that a package's CMakeLists.txt installs, with their paths."""
+    """Return (source, installed path) of what a package's CMakeLists.txt installs."""
     lines = _start_of(os.path.join(folder, "CMakeLists.txt"), _LONGEST).decode("utf-8", "replace")
     text = " ".join(line.partition("#")[0] for line in lines.splitlines())
     calls = (it.partition(")")[0].replace('"', " ").split() for it in text.split("install(")[1:])
@@ -218,7 +219,7 @@ def _installed(folder: str) -> tuple[tuple[str, str], ...]:
 
 
 def _of_install(folder: str, words: list[str]) -> Iterator[tuple[str, str]]:
-    """Yield the sources and targets of one ``install(DIRECTORY a b/ DESTINATION c)``."""
+    """Yield (source, target) of one ``install(DIRECTORY a b/ DESTINATION c)``."""
     if words[:1] not in (["DIRECTORY"], ["FILES"]) or words[-1:] == ["DESTINATION"]:
         return
     at = words.index("DESTINATION") if "DESTINATION" in words else 0

@@ -58,6 +58,7 @@ class Server:
         return self._send_command(ENDED if ended else END, pid, [])
 
     def _send_command(self, command: bytes, pid: int, descriptors: list[int]) -> int:
+        """Send the server a command; return the number that it answers with."""
         with self.lock:
             try:
                 socket.send_fds(self.control, [COMMAND.pack(command, pid)], descriptors)
@@ -103,7 +104,7 @@ class XacroChild:
         return left
 
     def end(self, ended: bool = False) -> int:
-        """End it; return the signal if it had ended by itself, or 0."""
+        """End the child; return the signal if it had ended by itself, or 0."""
         if self.signal is None:
             self.ours.close()
             self.signal = 0

@@ -45,7 +45,7 @@ def _is_xacro(source: Source) -> bool:
 
 
 def is_xacro(path: str) -> bool:
-    """Return whether it is a xacro, by its name or, as turtlebot3's .urdf files, by its contents."""
+    """Return whether a file is a xacro, by its name or, as turtlebot3's .urdf files, its contents."""
     if not path.endswith((".urdf", ".srdf", ".sdf", ".xml")):
         return path.endswith(XACRO)
     with suppress(InputError):

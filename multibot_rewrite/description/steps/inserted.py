@@ -111,7 +111,7 @@ def elements_of(items: list[Insertion], lead: str) -> list[str]:
 
 
 def slot_edits(start: int, end: int, text: str) -> list[Edit]:
-    """Replace ``start:end`` by ``text``, in which ``ROBOT_SLOT`` stands for the robot's name."""
+    """Return the edits that put ``text``, with the robot's name at each ``ROBOT_SLOT``, in place."""
     first, *rest = (piece.encode() for piece in text.split(ROBOT_SLOT))
     if not rest:
         return [Edit(start, end, first, None)]
@@ -151,18 +151,19 @@ def removals(document: Document, robot: str) -> list[Edit]:
         try:
             edits += _removal_edits(document, marker, starts)
         except ValueError:  # an end tag is not where this module writes it
-            raise _edited_by_hand(document, marker) from None
+            raise _error_for_edit_by_hand(document, marker) from None
     return edits
 
 
 def _removal_edits(
     document: Document, marker: Marker, starts: dict[etree._Element, int]
 ) -> Iterator[Edit]:
+    """Yield the edits that take out what a marker's comment says was inserted."""
     source = document.source
     parent = marker.comment.getparent()
     inserted = list(marker.comment.itersiblings("*"))[: marker.elements]
     if parent is None or len(inserted) != marker.elements:
-        raise _edited_by_hand(document, marker)
+        raise _error_for_edit_by_hand(document, marker)
     at = source.index(b"<!--%s-->" % (marker.comment.text or "").encode(), starts[parent])
     # Everything back to the tag before it is white space that was written with it.
     begin = source.rindex(b">", 0, at) + 1
@@ -178,12 +179,12 @@ def _removal_edits(
         text = text_of(filled) if filled is not None else ""
         slot = text_slot(document.source, start, text) if text else None
         if slot is None:
-            raise _edited_by_hand(document, marker)
+            raise _error_for_edit_by_hand(document, marker)
         begin, end, before, _ = emptied(document.source, slot)
         yield Edit(start, end, document.source[start:begin] + before, None)
 
 
-def _edited_by_hand(document: Document, marker: Marker) -> InputError:
+def _error_for_edit_by_hand(document: Document, marker: Marker) -> InputError:
     place = f"{document.file}:{marker.comment.sourceline}:1"
     return InputError(f"{place}: the elements this marker counts were edited by hand")
 

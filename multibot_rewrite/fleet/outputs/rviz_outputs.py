@@ -81,7 +81,7 @@ def windows_of_plan(plan: System, relayed: bool) -> tuple[RvizText, ...]:
 
 
 def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
-    """Return the rules for both topics of tf."""
+    """Return the rules (from, to) for both topics of tf."""
     # The robot's name may have ``tf`` in it, or be it: the topic is the last part of a name in a
     # namespace, else the first one of that name.
     tf, static = TF_TOPICS
@@ -108,6 +108,7 @@ def _robot_displays(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
 
 
 def _displays_of(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
+    """Yield a display for each topic of a robot that RViz can show."""
     kinds = rviz_data()["shown"]
     for topic in sorted(shown.of_type(kinds)):
         kind = kinds[shown.sent[topic]]
@@ -195,6 +196,7 @@ def bridged_window(
 
 
 def _empty_displays(document: YamlText) -> Iterator[Finding]:
+    """Yield a finding on displays that show nothing in the window for all robots."""
     shown = ((it, {at.kind for at in it.places}) for it in leaves(read_config(document).displays))
     found = [it for it, kinds in shown if TOPIC in kinds and TF_PREFIX not in kinds]
     if found:
@@ -221,7 +223,7 @@ class RvizOutput(NamedTuple):
     name: str
 
     def path(self, window: RvizText) -> str:
-        """Return where the config of one of its windows goes."""
+        """Return where the config of a window goes."""
         return f"{window.robot}/{os.path.basename(self.source)}" if window.robot else self.name
 
 
@@ -316,10 +318,9 @@ def why_for_each(path: str, layout: str) -> str:
 
 
 def windows(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[tuple[str, Start]]:
-    """Return what opens the windows, each with the one robot that it shows, or "" for all.
+    """Return (robot, what opens it) for each window, with "" for one of all robots.
 
-    MoveIt's displays read the parameters of their process.
-    """
+    MoveIt's displays read the parameters of their process."""
     given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
     if cell := plan.file.cell:
         given[cell.name] = parameters_path(cell)

@@ -118,6 +118,7 @@ def _world_topics(world: str, systems: Sequence[str]) -> dict[str, str]:
 
 
 def _robots_by_description(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
+    """Yield the robots of each description, with what a world calls them there."""
     found = lists_by_key((it.spec.simulated or it.spec.description, it) for it in robots)
     for alike in found.values():
         root = alike[0].member.source.root
@@ -136,6 +137,7 @@ def _model_name(one: _Element) -> str:
 
 
 def _plugin_edits(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:
+    """Yield the edits that give each robot its own values in a plugin of the world; or a finding."""
     for block in (one for one in plugin.iterchildren("*") if len(one)):
         texts_in = (text_of(one) for one in block.iter("*") if not len(one))
         if not any(_new_value(text, kind.robots[0], kind.names, False) for text in texts_in):
@@ -177,7 +179,7 @@ def _block_for(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -
 
 
 def _new_value(value: str, robot: RewrittenRobot, names: frozenset[str], tied: bool) -> str:
-    """Return what a value becomes for a robot; empty if it does not name it."""
+    """Return what a value becomes for a robot; empty if it does not name the robot."""
     # In what is ``tied`` to the robot, links and joints become its own.
     model, scope, rest = value.partition(_SCOPE)
     if value in names:

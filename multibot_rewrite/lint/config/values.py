@@ -64,6 +64,7 @@ def find_lint_codes(words: Sequence[str], where: str) -> tuple[str, ...]:
 
 
 def _levels_by_code(given: KeyValue) -> dict[str, str]:
+    """Return the level set for each code; raises UsageError for an unknown one."""
     levels = {}
     for word, it in _table_of(given):
         (code,) = find_lint_codes((word,), given.where)
@@ -121,6 +122,7 @@ def _seconds(given: KeyValue) -> float:
 
 
 def _codes_by_pattern(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Return pairs: a pattern of paths, and the codes listed for it."""
     return tuple(
         (pattern, _codes(it)) for key, it in _table_of(given) for pattern in _patterns(key, given)
     )
@@ -188,7 +190,7 @@ FIELDS = {"per-file-ignores": "per_file", "xacro": "arguments"}
 
 
 def anchored(pattern: str, folder: str, where: str) -> tuple[str, ...]:
-    """Return a pattern as one or two of whole paths; without a slash it is a name in any folder."""
+    """Return one or two patterns of whole paths; one without a slash is a name in any folder."""
     _check_pattern(pattern, where)
     if os.path.isabs(pattern):
         return (pattern,)

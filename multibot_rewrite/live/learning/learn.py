@@ -159,6 +159,7 @@ def _endpoints(ends: Iterable[End], place: _SeenPlace) -> dict[_Slot, Endpoint]:
 
 
 def _types_by_endpoint(ends: Iterable[End]) -> Seen:
+    """Return by endpoint its valid types, sorted; raises UsageError for an impossible one."""
     types: dict[EndpointId, set[str]] = defaultdict(set)
     for end in ends:
         check_seen_name(end.kind, end.name)

@@ -146,7 +146,7 @@ class _Seen(NamedTuple):
         return found
 
     def qos(self, end: Endpoint) -> Qos | None:
-        """Return its QoS, if the graph shows it."""
+        """Return the QoS of an endpoint, if the graph shows it."""
         return next((it.qos for it in self.ends(end) if it.qos), None)
 
     def transports(self, end: Endpoint) -> Iterator[Endpoint]:

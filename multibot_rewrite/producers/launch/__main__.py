@@ -123,6 +123,7 @@ def _listened(ours: socket.socket, seconds: float) -> object:
     end = monotonic() + seconds
 
     def read(count: int) -> bytes:
+        """Return so many bytes of the child's; raises EOFError, and TimeoutError when time is over."""
         parts = bytearray()
         while len(parts) < count:
             ours.settimeout(max(end - monotonic(), 0.001))
@@ -145,6 +146,7 @@ def _work(order: LaunchOrder, folder: str, first: str, seconds: float, place: in
     inbox, outbox = os.fdopen(place, "rb", closefd=False), os.fdopen(place, "wb", closefd=False)
 
     def send(data: bytes) -> None:
+        """Write all of the bytes to the parent."""
         outbox.write(data)
         outbox.flush()
 

@@ -70,7 +70,7 @@ def passes_topics_on(package: str, program: str) -> bool:
 
 
 def files_in(node: LaunchedNode) -> Iterator[str]:
-    """Return the files that a bridge of a launch file is told; they need not be here."""
+    """Yield the files that a launch file tells a bridge to read; they need not be here."""
     if passes_topics_on(node.package, node.executable):
         values = (load_yaml(it.text, it.file or node.place.file) for it in node.parameters)
         sections = (one for it in values if isinstance(it, dict) for one in it.values())
@@ -140,6 +140,7 @@ def refused_rows(it: Run) -> Iterator[str]:
 
 
 def _argument_rows(program: str, words: Sequence[str]) -> Iterator[Row]:
+    """Yield the rows of a bridge's arguments."""
     for word in words:
         row = _ROW.fullmatch(word)
         if program in _BRIDGES and row is not None:
@@ -158,6 +159,7 @@ def _rows_of(row: re.Match[str]) -> Iterator[Row]:
 
 
 def _topic_rows(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
+    """Yield the row, or one for each way, of a topic in an argument."""
     full = type_ if type_.count("/") > 1 else type_.replace("/", "/msg/")
     for role in _ROLES.get(way, ()):
         yield Row(Endpoint(TOPIC, role, name, full), inside)
@@ -244,7 +246,7 @@ def _ends(it: Run, notes: list[LaunchNote]) -> Iterator[End]:
 
 
 def _domains_and_files(words: Sequence[str]) -> tuple[dict[str, object], list[str]]:
-    """Split the arguments of a bridge: the domains that options give, as a file has them; the files."""
+    """Return (domains by the keys of a bridge's file, files) in a domain_bridge's arguments."""
     options: dict[str, object] = {}
     paths, left = [], list(words)
     while left:

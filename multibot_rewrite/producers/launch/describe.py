@@ -153,7 +153,7 @@ def _text(value: Any, here: Visit) -> str:
 
 
 def _known(value: Any, here: Visit, what: str = "") -> str:
-    """Return the value of substitutions; empty for a missing package, and ``what`` is then noted."""
+    """Return the value of substitutions; empty for a missing package, which is noted as ``what``."""
     made = _text(value, here)
     if made != GONE:
         return made
@@ -246,6 +246,7 @@ def how_it_runs(action: Any, here: Visit) -> Process:
     told = getattr(action, "process_description", None) or action
 
     def own(name: str) -> Any:
+        """Return what an action was given for a name, by attribute."""
         given = getattr(action, f"_ExecuteLocal__{name}", None)
         return getattr(action, name, None) if given is None else given
 
@@ -342,6 +343,7 @@ def _node_attribute(action: Any, name: str) -> Any:
 
 
 def _command_line(action: Any, who: str, here: Visit) -> Iterator[str]:
+    """Yield a node's arguments, those for ROS behind ``--ros-args``."""
     own, ros = (
         [*_known_arguments(_node_attribute(action, it) or (), who, here)]
         for it in ("arguments", "ros_arguments")
@@ -456,6 +458,7 @@ def _texts_of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterTe
 
 
 def _text_of_values(values: Any) -> ParameterText:
+    """Return parameters as the text of a file for any node."""
     body = {"/**": {"ros__parameters": {name: _plain_value(it) for name, it in values.items()}}}
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
     return ParameterText("", yaml.dump(body, None, dumper, sort_keys=False))
@@ -476,6 +479,7 @@ def _plain_value(value: Any) -> Any:
 def _parameter_texts(
     values: Iterable[tuple[str, str]], files: Iterable[str], here: Visit
 ) -> Iterator[ParameterText]:
+    """Yield the parameter files, then the single values as a text."""
     for path in files:
         yield from _text_of_file(path, here)
     if written := params_text(values):
@@ -483,6 +487,7 @@ def _parameter_texts(
 
 
 def _text_of_file(path: str, here: Visit) -> Iterator[ParameterText]:
+    """Yield a parameter file's text, or note why it is not known."""
     if not os.path.isfile(path) or os.path.getsize(path) > LIMIT:
         lost = missing_package(FileNotFoundError(path))
         said = f"of the package {lost!r}, which is not installed here, is not known"

@@ -68,6 +68,7 @@ def ros2_run(words: Sequence[str]) -> tuple[str, str, tuple[str, ...]] | None:
 
 
 def _split_rule(text: str) -> tuple[str, str]:
+    """Return (from, to) of a remap rule."""
     old, _, new = text.partition(":=")
     return old, new
 
@@ -105,7 +106,7 @@ class Spawned(NamedTuple):
 
     @property
     def full_name(self) -> str:
-        """Its full name, in the namespace of its manager."""
+        """The controller's full name, in the namespace of its manager."""
         return f"{self.manager.rpartition('/')[0]}/{self.name}"
 
 
@@ -174,6 +175,7 @@ def texts_of(
 
 
 def _controllers_of(node: LaunchedNode) -> Iterator[Spawned]:
+    """Yield the controllers that a spawner loads, by its arguments."""
     for given in _options_of_each(node.arguments):
         words = [word for text in given.controller_ros_args for word in text.split()]
         above = given.namespace or node.namespace

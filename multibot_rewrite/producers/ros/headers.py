@@ -79,7 +79,7 @@ class SensorTopic(NamedTuple):
 
     @property
     def has_rate(self) -> bool:
-        """Return whether several messages are worth it: small ones of one publisher, now and then."""
+        """Return whether a topic's rate is worth several messages: small ones of one publisher."""
         return (
             self.type != CLOCK_TYPE
             and self.publishers == 1
@@ -165,6 +165,7 @@ class HeaderSamples:
                 self._began = self._since[topic.name] = time.monotonic()
 
     def _receive(self, topic: SensorTopic, data: bytes, mark: Mark = None) -> None:
+        """Note frame, joints, pose and age of a message; end the subscription when that is enough."""
         if topic.type == CLOCK_TYPE:
             self._clock = (self._clock or Pace()).after(read_stamp(data) or 0.0)
             return

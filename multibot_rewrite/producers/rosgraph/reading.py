@@ -53,7 +53,7 @@ ONLY_TOPICS = Caveat("topics-only", True, _NO_SERVICE)
 
 
 def is_message(value: object) -> bool:
-    """Return whether it is a message and not a snapshot of ours, which has a schema."""
+    """Return whether a value is a message and not a snapshot of ours, which has a schema."""
     return (
         isinstance(value, dict) and "nodes" in value and not value.keys() & {"schema", "endpoints"}
     )
@@ -74,7 +74,7 @@ def from_message(value: dict[str, Any], file: str) -> System:
 
 
 def from_yaml(text: str, file: str) -> System:
-    """Read what ``ros2 topic echo --once --full-length`` printed; raises InputError."""
+    """Return the snapshot in what ``ros2 topic echo --once --full-length`` printed; or InputError."""
     if _CUT_SHORT.search(text):
         hint = "print it with ros2 topic echo --once --full-length"
         raise InputError(f"{file}: the message is cut short by '...'; {hint}")

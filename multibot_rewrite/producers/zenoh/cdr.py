@@ -108,7 +108,7 @@ def _read(data: bytes, read: "Callable[[_Reader], _T]", without: _T) -> _T:
 
 
 def _texts(reader: "_Reader", many: int) -> list[str]:
-    """Return the first texts after the stamp."""
+    """Return the first ``many`` texts behind the stamp."""
     reader.skip(_STAMP)
     return [reader.text() for _ in range(many)]
 

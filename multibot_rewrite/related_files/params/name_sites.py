@@ -75,7 +75,7 @@ class _Job(NamedTuple):
 def find_names(
     document: YamlText, section: ParamSection, known: KnownNodes, release: str
 ) -> SectionNames:
-    """Look at every parameter of a section; InputError for keys that are not scalars."""
+    """Return the names in all parameters of a section; InputError for keys that are not scalars."""
     names = SectionNames([], set(), [], [], [], [], [])
     tree = section.node.tree if section.node else known.anywhere
     _walk_mapping(_Job(document, section, known, release, names), section.body, [(tree, ())])
@@ -90,6 +90,7 @@ def params_at(node: NodeParameters, name: str, key: yaml.ScalarNode) -> list[Par
 
 
 def _walk_mapping(job: _Job, body: yaml.MappingNode, states: list[_State]) -> None:
+    """Note the names in the parameters of a mapping, and in those below it."""
     seen = set()
     for key, value in body.value:
         if not isinstance(key, yaml.ScalarNode):
@@ -108,7 +109,7 @@ def _walk_mapping(job: _Job, body: yaml.MappingNode, states: list[_State]) -> No
 
 
 def _children(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
-    """Return the known places below for a key."""
+    """Return the places in the tree of known parameters that a key leads to from ``states``."""
     if "." in word:
         for place, part in enumerate(word.split(".")):
             states = _children(states, part, key, place)
@@ -152,6 +153,7 @@ def _claim_parameter(
 
 
 def _key_site(mark: _Mark, param: Param) -> Site:
+    """Return the site of a name in a key's segment."""
     key, segment, kind = mark
     words = str(key.value).split(".")
     at, size = sum(len(it) + 1 for it in words[:segment]), len(words[segment])
@@ -163,6 +165,7 @@ def _key_site(mark: _Mark, param: Param) -> Site:
 def _value_sites(
     job: _Job, key: yaml.ScalarNode, scalars: list[yaml.Node], param: Param | None, reach: str
 ) -> None:
+    """Note the site of each name in a parameter's values; values of unknown kind are unclaimed."""
     kind = param.kind if param else ""
     # The releases in which the node takes off a slash that a frame starts with.
     strips = job.section.node.strips if job.section.node else ""

@@ -102,7 +102,7 @@ class Drive(NamedTuple):
 
     @property
     def pairs(self) -> list[tuple[Wheel, Wheel]]:
-        """The wheels of the two sides, in the order they are named in."""
+        """Pairs of a left and a right wheel, in the order they are named in."""
         return list(zip(self.left, self.right, strict=False))
 
 
@@ -133,6 +133,7 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
 
 
 def _wheels_of_model(plugin: _Element) -> ModelWheels | None:
+    """Return the wheels of the SDF model around a plugin; None for a URDF."""
     above = plugin.getparent()
     return model_wheels(above) if above is not None and above.tag == "model" else None
 

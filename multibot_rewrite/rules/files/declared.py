@@ -62,7 +62,7 @@ def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
 def _meant_by(
     section: Section, given: Iterable[Setting], release: str
 ) -> Iterator[tuple[Setting, str]]:
-    """Yield each parameter that its node is not known to have, and the one probably meant."""
+    """Yield (setting, probable name) for each parameter that its node is not known to have."""
     unknown = [
         it for it in given if not _is_known(section, it) and PARAMETERS not in it.name.split(".")
     ]
@@ -254,7 +254,7 @@ def out_of_bounds(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_filled_in(value: Value | None) -> bool:
-    """Return whether it is a word in capitals, which a launch file of Nav2 replaces by a value."""
+    """Return whether a value is a word in capitals, which Nav2's launch files replace."""
     return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
 
 

@@ -54,6 +54,7 @@ def broken_commands(file: NamedFile) -> Iterator[Finding]:
 
 
 def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
+    """Yield (what is wrong, what to do) for a command of joy_teleop."""
     type_ = _text_of(values, "type")
     if type_ not in _TYPES:
         said = f"is of type {type_!r}" if type_ else "has no type"
@@ -73,6 +74,7 @@ def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
 
 
 def _topic_command_faults(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
+    """Yield (what is wrong, what to do) for a command that publishes on a topic."""
     mapped, fixed = (
         any(it.startswith(f"{name}.") for it in values) for name in (_MAPPINGS, _VALUE)
     )

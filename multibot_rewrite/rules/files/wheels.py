@@ -93,6 +93,7 @@ def _wheels(subject: Subject, given: Setting | None) -> list[Wheel]:
 def _size_faults(
     subject: Subject, values: _Values, left: Sequence[Wheel], right: Sequence[Wheel]
 ) -> Iterator[Finding]:
+    """Yield findings if the distance or the radius of wheels differs from the description's."""
     many = bool(left[1:])
     apart = separation(subject.robot, left[0], right[0], many)
     round_ = radius(subject.robot, (*left, *right))
@@ -116,6 +117,7 @@ def _size_faults(
 def _axis_faults(
     node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]
 ) -> Iterator[Finding]:
+    """Yield findings if left and right wheels are swapped, or their axes opposite."""
     one, other = left[0], right[0]
     names = f"{one.joint.name!r} and {other.joint.name!r}"
     if are_opposite(one, other):
@@ -181,6 +183,7 @@ def _costmap_faults(file: NamedFile, section: Section) -> Iterator[Finding]:
 
 
 def _footprint_size(section: Section) -> Size | None:
+    """Return the inner and outer radius of a costmap's footprint; None without a valid one."""
     given = section.whole.get(_FOOTPRINT)
     points = polygon_of(given.value) if given and isinstance(given.value, str) else None
     if not given or not points or len(points) < 3:

@@ -276,7 +276,7 @@ def _value_faults(
 
 
 def _is_unread(element: etree._Element) -> bool:
-    """Return whether it is the axis of a joint whose axis is not read."""
+    """Return whether an element is the axis of a joint whose axis is not read."""
     joint = element.getparent()
     return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
 

@@ -159,7 +159,7 @@ def _of_another(name: str, section: Values, definitions: Definitions) -> str:
 def _counterparts(
     library: str, of_ros_1: bool, definitions: Definitions
 ) -> tuple[tuple[str, bool], ...]:
-    """Return plugins of the same name or subject: in the other ROS, or the other Gazebo."""
+    """Return (name, is it for ROS 1) of plugins alike: in the other ROS, or the other Gazebo."""
     own = _topic_of_library(library)
     of_gz = library.startswith(GZ)
     start = GAZEBO_ROS if of_gz else GZ

@@ -113,6 +113,7 @@ def _converter_faults(child: _Element, row: SdfRow, home: str) -> Iterator[Probl
 
 
 def _parents_of(tag: str) -> tuple[str, ...]:
+    """Return the elements of SDF into which the converter puts a tag of ``<gazebo>``."""
     if tag in OF_MODELS:
         return ("model", "link", "joint")
     if tag in OF_BOTH:

@@ -81,6 +81,7 @@ def untold(found: Iterable[Finding]) -> list[Finding]:
 
 
 def _changes(before: System, seen: Index) -> Iterator[_Change]:
+    """Yield the changes of nodes, endpoints, transforms, frames and parameters."""
     old, new = _by_key(before.ends), _by_key(seen.system.ends)
     nodes = {it.name for it in before.nodes}
     for key, end in new.items():
@@ -205,6 +206,7 @@ def _edges_by_place(edges: Iterable[Edge]) -> Mapping[_Place, Edge]:
 
 
 def _is_moved(old: Edge, new: Edge) -> bool:
+    """Return whether a fixed transform has other numbers than before."""
     fixed = old.static and new.static and old.transform and new.transform
     both = zip(old.transform, new.transform, strict=True) if fixed else ()
     return any(abs(it - was) > _SAME for was, it in both)
@@ -221,13 +223,14 @@ def _changed_frames(before: System, seen: Index) -> Iterator[_Change]:
 
 
 def _names_in_messages(system: System) -> Iterator[tuple[str, str]]:
-    """Yield the topics with the frames and joints that their messages name, and descriptions."""
+    """Yield (topic, frames and joints that its messages name); descriptions, too."""
     for it in system.heard:
         yield it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints)
     yield from ((it.topic, name) for it in system.descriptions for name in (*it.links, *it.joints))
 
 
 def _changed_parameters(before: System, seen: Index) -> Iterator[_Change]:
+    """Yield for each node the parameters that have other values."""
     was = {(it.node, it.name): it.value for it in before.parameters}
     changed: dict[str, list[str]] = defaultdict(list)
     for it in seen.system.parameters:

@@ -109,6 +109,7 @@ def _surely_runs(end: End) -> bool:
 
 
 def _each_node(ends: Iterable[End]) -> Iterator[End]:
+    """Yield the last end of each node."""
     return iter({end.node: end for end in ends}.values())
 
 
@@ -122,6 +123,7 @@ def _published_instead(
     fitting = (it for it in above if published[it].type == end.type)
 
     def mine(it: str) -> bool:
+        """Return whether a node of the robot publishes a topic."""
         return not own.isdisjoint(map(seen.robot, nodes_of(published[it].publishers)))
 
     if captured := next(filter(mine, fitting), ""):
@@ -134,6 +136,7 @@ def _published_instead(
         return lacking
 
     def is_of_another(it: str) -> bool:
+        """Return whether a topic is another robot's."""
         if it not in published or nodes_of(published[it].publishers) == (end.node,):
             return False
         return not _is_of_other_robot(seen, end.name, it) and (not owner or mine(it))
@@ -148,7 +151,7 @@ def _published_instead(
 
 
 def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
-    """Return whether these are names of two robots, such as ``left_arm`` and ``arm_left``."""
+    """Return whether two names are those of two robots, such as ``left_arm`` and ``arm_left``."""
     robot, another = seen.robot(name), seen.robot(other)
     return bool(robot and another) and robot != another
 
@@ -227,6 +230,7 @@ def _without_own_name(end: End) -> str:
 def _missed_topic(
     seen: Index, end: End, other: Ends, level: str, more: Sequence[End] = ()
 ) -> Finding:
+    """Return the finding about a subscriber of a topic that is sent under another name."""
     robot = seen.robot(end.node) or seen.robot(end.name)
     sender = min(nodes_of(other.publishers), key=lambda it: seen.robot(it) != robot)
     also = f" (and so does {shorten(nodes_of(more))})" if more else ""
@@ -303,6 +307,7 @@ _NOBODY = _Served({}, {}, NONE)
 
 @once
 def _served_names(seen: Index) -> Mapping[tuple[str, str], _Served]:
+    """Return by kind and type the names that are served."""
     found: dict[tuple[str, str], dict[str, Ends]] = defaultdict(dict)
     for (kind, name), ends in seen.by_name.items():
         if ends.servers:
@@ -314,6 +319,7 @@ def _served_names(seen: Index) -> Mapping[tuple[str, str], _Served]:
 
 
 def _unserved_findings(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
+    """Yield the finding about a client whose name nobody serves."""
     listed = listed_in_vain(seen, end)
     outside = f"/{last_word(listed)}" if listed and f"/{last_word(listed)}" in seen.nodes else ""
     near = "" if outside else _served_instead(seen, end, served) or in_other_namespace(seen, end)
@@ -372,7 +378,7 @@ def _calls_in_vain(seen: Index, end: End) -> bool:
 
 @once
 def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], list[str]]]:
-    """Return by kind and plain name the robots that call in vain, and those that are served."""
+    """Return by kind and plain name (robots that call in vain, robots that are served)."""
     found: dict[tuple[str, str], tuple[list[str], list[str]]] = defaultdict(lambda: ([], []))
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.clients or ends.servers else ""
@@ -404,6 +410,7 @@ def _is_manager(node: str) -> bool:
 
 
 def _served_instead(seen: Index, end: End, served: _Served) -> str:
+    """Return the served name that a client probably means; empty for none."""
     robot, owner = seen.robot(end.node), seen.robot(end.name)
     same = served.plain.get(seen.plain(end.name), ())
     # Another robot's is no answer to a robot that lacks it.

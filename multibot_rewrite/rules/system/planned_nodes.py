@@ -51,7 +51,7 @@ def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _groups_of_one(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the groups of nodes of which one runs, each with its robot."""
+    """Yield (nodes of which one runs, their robot)."""
     for group in alternatives(plan.system):
         yield group, next((plan.robot_of[it] for it in group if it in plan.robot_of), "")
 
@@ -82,10 +82,12 @@ def is_absent(plan: Index, seen: Index, robot: str) -> bool:
 
 
 def _is_missing(plan: Index, seen: Index, robot: Robot) -> bool:
+    """Return whether no node of a robot runs, and some are planned."""
     return is_absent(plan, seen, robot.name) and bool(_missing_nodes(plan, seen, robot))
 
 
 def _not_started(plan: Index, node: str) -> Cause:
+    """Return the likely cause why a planned node does not run."""
     plugin, place = plugin_of(plan, node)
     if plugin:
         started = f"{plugin} of the description should start it, see {place}"

@@ -173,6 +173,7 @@ def assemble(
     below = settings.get("model_namespace", "")
 
     def words(key: str) -> tuple[str, ...]:
+        """Return the words of a setting; none if it is missing."""
         return tuple(settings.get(key, "").split())
 
     return PluginDefinition(
@@ -208,6 +209,7 @@ def _checkout_source(words: str) -> str:
 
 
 def _first_tags(sites: Iterable[SiteRow]) -> frozenset[str]:
+    """Return the tag with which each path begins."""
     paths = (split_path(site.path)[0] for site in sites if site.path[0] != "@")
     return frozenset(split_step(steps[0])[0] for steps in paths)
 
@@ -277,6 +279,7 @@ def _no_releases(words: str) -> str:
 
 
 def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
+    """Raise DefinitionsError for an unknown kind, option or form."""
     kinds = list(kinds)
     if not kinds:
         raise DefinitionsError(f"{place}: {path} has no kind, use one of {', '.join(KINDS)}")
@@ -295,7 +298,7 @@ def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str,
 
 
 def is_step(text: str) -> bool:
-    """Return whether this is one step of a path, as a definition file may have it."""
+    """Return whether a text is one step of a path, as a definition file may have it."""
     return _ONE_STEP.fullmatch(text) is not None
 
 

@@ -140,13 +140,14 @@ class Definitions:
         return values_of((first, *names), of_ros_1, is_open, self._value_rows(raws))
 
     def _value_rows(self, raws: Iterable[Raw]) -> Iterator[Value]:
+        """Yield the values of unread sections, and of the blocks that they include."""
         for file, line, chunk in raws:
             yield from read_values(file, line + 1, chunk.split("\n")[1:])
             for block in " ".join(_rows_of_setting(chunk, "with")).split():
                 yield from self._value_rows(self._raw.get(("block", block), ()))
 
     def valued(self) -> Iterator[tuple[str, bool]]:
-        """Yield the names that have values, each with whether it is for ROS 1."""
+        """Yield (name, whether it is for ROS 1) for each name that has values."""
         named = ((name, raws) for (type_, name), raws in self._raw.items() if type_ in VALUED)
         for name, raws in named:
             found = {_is_of_ros_1(it[2]) for it in raws if has_values(it[2])}
@@ -251,6 +252,7 @@ def merge(first: PluginDefinition, second: PluginDefinition) -> PluginDefinition
 
 
 def _agreed_setting(first: PluginDefinition, second: PluginDefinition, setting: str) -> str:
+    """Return a setting of two sections; raises DefinitionsError where both have it differently."""
     old, new = getattr(first, setting), getattr(second, setting)
     if old and new and old != new:
         place = f"{second.file}:{second.line}"

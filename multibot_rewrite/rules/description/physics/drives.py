@@ -57,6 +57,7 @@ def wheel_size(subject: Subject) -> Iterator[Problem]:
 
 
 def _size_problem(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
+    """Return the problem of a drive's size that differs from the measured one."""
     element = drive.sizes[name]
     said = "" if element is not None else "not said, and "
     apart = " apart" if "sep" in name.lower() else ""
@@ -98,6 +99,7 @@ def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
 
 
 def _why_not_turning(joint: Joint) -> str:
+    """Return why a wheel cannot turn, for a message; empty if it can."""
     if joint.type in ("fixed", "prismatic"):
         return f"is {joint.type}: it cannot turn"
     limit = joint.parts.get("limit")

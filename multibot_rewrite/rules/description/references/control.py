@@ -111,7 +111,7 @@ def _needs_a_drive(joint: Joint) -> bool:
 
 
 def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
-    """Yield joints in <ros2_control> that follow another one, and which."""
+    """Yield (joint in <ros2_control>, joint that it follows)."""
     for it, joint in controlled_joints(subject):
         mimic = joint.element.find("mimic")
         if mimic is not None and it.get("mimic", "").strip().lower() not in ("false", "0"):

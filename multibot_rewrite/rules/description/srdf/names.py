@@ -40,6 +40,7 @@ def of_moveit(
 
     @wraps(check)
     def found(subject: Subject) -> Iterator[Problem]:
+        """Yield the problems, if MoveIt reads the SRDF."""
         if not is_pinocchios(subject.document.root):
             yield from check(subject)
 
@@ -59,6 +60,7 @@ def undeclared_for_moveit(code: str) -> Callable[[Subject], Iterator[Problem]]:
     """Return a check that yields a rule's undeclared names in an SRDF for MoveIt."""
 
     def check(subject: Subject) -> Iterator[Problem]:
+        """Yield the undeclared names, if MoveIt reads the SRDF."""
         return undeclared(code, subject)
 
     return of_moveit(check)
@@ -267,7 +269,7 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _state_joints(root: _Element) -> Iterator[tuple[_Element, str, str]]:
-    """Yield the joints of named states, with the group and the joint's name."""
+    """Yield (element, group, joint) for the joints of named states."""
     for state in root.iterchildren("group_state"):
         for it in state.iterchildren("joint"):
             yield it, text_of(state, "group"), text_of(it)

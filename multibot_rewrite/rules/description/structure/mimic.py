@@ -71,7 +71,7 @@ def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
 
 
 def _leaders(robot: Robot) -> dict[str, str]:
-    """Return mimicking joint -> the joint it follows."""
+    """Return by mimicking joint the joint that it follows."""
     return {
         joint.name: mimic.get("joint", "")
         for joint, mimic in joints_with(robot, "mimic")
@@ -147,7 +147,7 @@ def start_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _start_values(subject: Subject) -> Iterator[tuple[_Element, str]]:
-    """Yield each value that a joint starts at, and the joint."""
+    """Yield (element, joint) for each value that a joint starts at."""
     for system in subject.elements.tops("ros2_control"):
         for joint in system.iterchildren("joint"):
             for state in joint.iterchildren("state_interface"):
@@ -228,6 +228,7 @@ def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _inverted_bounds(interface: _Element) -> Iterator[Problem]:
+    """Yield a problem if an interface's min is above its max."""
     params = {it.get("name"): it for it in interface.iterchildren("param")}
     found = {name: number(text_of(params[name])) for name in ("min", "max") if name in params}
     low, high = found.get("min"), found.get("max")
