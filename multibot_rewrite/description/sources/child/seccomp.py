@@ -3,7 +3,7 @@
 
 Calls that open files are left where Landlock says which. Sources: Linux,
 Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
-include/uapi/asm-generic/unistd.h."""
+include/uapi/asm-generic/unistd.h. Memory is as in OpenSSH, sandbox-seccomp-filter.c."""
 
 import ctypes
 import errno
@@ -47,7 +47,6 @@ _LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _ANSWER = 0x20, 0x15, 0x35, 0x45, 0x06
 _KILL, _ALLOW, _REFUSE = 0x80000000, 0x7FFF0000, 0x00050000 | errno.EPERM
 # Offsets in the record of a call: its number, the architecture, the low half of the third argument.
 _NUMBER, _ARCHITECTURE, _SECOND, _THIRD = 0, 4, 24, 32
-# What memory may not be: all but read and written, as in the filter of OpenSSH.
 _PROTECTED = 0xFFFFFFFF & ~3
 # Numbers from here on are the other interface (x32) of the same processor.
 _X32 = 0x40000000
