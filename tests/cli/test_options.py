@@ -128,7 +128,7 @@ def test_robots_are_a_number_beside_arguments_of_a_xacro() -> None:
     assert robots(options) == ["robot1", "robot2", "robot3"]
     assert xacro_args(options) == {"name": "a:=b", "empty": ""}
     check_xacro(options, [ROVER, ARM])
-    with pytest.raises(UsageError, match=r"NAME:=VALUE is for xacro, a\.urdf is none"):
+    with pytest.raises(UsageError, match=r"a\.urdf is no xacro: leave out NAME:=VALUE"):
         check_xacro(options, ["a.urdf"])
 
 
