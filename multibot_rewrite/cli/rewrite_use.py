@@ -54,7 +54,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     _check_together(options)
     inputs = (options.input, options.urdf or "", options.xacro or "")
     if xacro_args(options) and not any(is_xacro(path) for path in inputs):
-        raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is none; leave it out")
+        raise UsageError(f"{input_name(options)} is no xacro: leave out NAME:=VALUE")
     if len(names) > 1 and (options.undo or options.in_place):
         raise UsageError("--undo and --in-place take one robot at a time")
     check_report(options, printed=not (options.output or options.in_place))

@@ -28,6 +28,7 @@ from multibot_rewrite.rules.files.parameter_files import beyond
 from multibot_rewrite.rules.settings import Settings
 from tools.interfaces.declared_table import ID, plugin_owners, table
 from tools.interfaces.parameter_facts import read_parameters
+from tools.interfaces.table import read_packed
 
 SHIPPED = Path(FILE)
 CONTROLLERS = fixture_text("lint_beside_controllers.yaml")
@@ -516,7 +517,7 @@ def test_every_class_of_a_package_with_plugins_has_a_plugin() -> None:
     servers |= {"utils", "EdgeScorer", "OperationsManager", "RouteOperationClient"}
     servers |= {"PluginContainerLayer", "CollisionMonitor", "CollisionDetector", "ExclusionZone"}
     for release in RELEASES:
-        text = (FIXTURES / f"interfaces/parameters_{release}.tsv").read_text()
+        text = read_packed(FIXTURES / f"interfaces/parameters_{release}.tsv.xz")
         for it in read_parameters(text):
             if it.package in known.packages.values() and it.path.startswith(ID):
                 is_known = it.owner in servers or (it.package, it.owner) in known.owners
