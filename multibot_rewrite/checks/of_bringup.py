@@ -80,6 +80,7 @@ def as_in_the_vendors_files(plan: FleetPlan, found: Iterable[Finding]) -> Iterat
 
 
 def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
+    """Return code and line of each error in a parameter file by itself."""
     from multibot_rewrite.lint.check import lint_data
     from multibot_rewrite.rules.settings import Settings
 
@@ -149,6 +150,7 @@ def _robots_of(it: Finding, seen: Index) -> set[str]:
 
 
 def _plain_error(it: Finding, fleet: Index) -> _Error:
+    """Return code and names of an error, the names without the robot's."""
     # What is said of words begins with their node.
     names = it.names or (it.node or it.message,)
     plain = (fleet.plain(it) if it.startswith("/") else fleet.plain_frame(it) for it in names)
@@ -156,11 +158,12 @@ def _plain_error(it: Finding, fleet: Index) -> _Error:
 
 
 def _plain_parts(parts: Iterable[_Part], fleet: Index) -> set[_Part]:
+    """Return pairs of role and node, the nodes without the robot's name."""
     return {(role, fleet.plain(node)) for role, node in parts}
 
 
 def _nodes_by_name(it: Finding, system: System) -> Mapping[str, Set[_Part]]:
-    """Return the nodes that have what a finding names: by name, transforms by their tf topic."""
+    """Return by each name of a finding (role, node) of what has it; of a frame its senders."""
     ends = ((end.name, (end.role, end.node)) for end in system.ends if end.name in it.names)
     edges = (edge for edge in system.edges if edge.child in it.names)
     sent = ((tree_topic(edge.topic), ("sends", node)) for edge in edges for node in edge.publishers)

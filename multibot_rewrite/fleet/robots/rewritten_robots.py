@@ -107,7 +107,7 @@ class RewrittenRobot(NamedTuple):
 
     @property
     def links(self) -> list[str]:
-        """Its links as frames."""
+        """The links of the robot, as frames."""
         return links_of(self.member.described, self.names.naming, self.spec.tag)
 
     @property
@@ -136,13 +136,14 @@ def read_jobs(
     trust: bool,
     release: str,
 ) -> dict[Sources, Jobs]:
-    """Read each description and SRDF once, as ``read_job``; ``trust``: xacro without the sandbox."""
+    """Return the jobs of each description and SRDF, read once; ``trust``: xacro without sandbox."""
 
     @cache
     def read_in(source: str, urdf: str | None, file: str) -> Reader:
         return reader(source, naming, urdf, tuple(definitions), file, trust, release)
 
     def read(robot: RobotSpec, path: str, urdf: str = "") -> Reader:
+        """Return the reader of one of a robot's files, which may be made for it."""
         made = dict(robot.filled)
         text, beside = made.get(path, path), made.get(urdf, urdf) or None
         return read_in(text, beside, path if path in made else "")

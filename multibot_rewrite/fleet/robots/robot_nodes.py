@@ -371,7 +371,7 @@ NOT_MANAGED = declare("MF803", "shared-node-not-managed", NOTE, formats=("fleet"
 def apart(
     nodes: Sequence[NodeFacts], file: FleetFile
 ) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
-    """Return the nodes, shared ones marked, and findings about lifecycle managers of these."""
+    """Return the nodes with shared ones marked, and findings about lifecycle managers of these."""
     marked = [it._replace(shared=_runs_once(it.name, it.shared, file)) for it in nodes]
     shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]

@@ -256,7 +256,7 @@ def listed_in_vain(seen: Index, end: End) -> str:
 
 
 def is_needed(end: End) -> bool:
-    """Return whether something of the robot must give it; a chooser seldom has all inputs."""
+    """Return whether something of the robot must give an end; a chooser seldom has all inputs."""
     by_code = end.role in (SUBSCRIBES, CALLS) and end.code_name and end.sure == RUNS
     outside = is_from_outside(end.name) or is_from_outside(end.code_name)
     idle = is_viewer(end.node) or (end.role == SUBSCRIBES and chooses(end.node))
@@ -319,5 +319,5 @@ def _may_be(seen: Index, ends: Ends, end: End) -> bool:
 
 
 def _givers(ends: Ends) -> list[End]:
-    """Return who surely sends or serves it."""
+    """Return the ends that surely send or serve a name."""
     return [it for it in (*ends.publishers, *ends.servers) if it.sure == RUNS]
