@@ -61,16 +61,15 @@ def _verify(
     touched = [number in numbers for number in range(len(before.starts))]
     pairs = zip(before.root.iter("*"), after.root.iter("*"), touched, strict=False)
     same = len(before.starts) == len(after.starts)
-    alike = same and all(_is_alike(old, new, there) for old, new, there in pairs)
+    # Of one with an edit only the tag counts.
+    alike = same and all(
+        old.tag == new.tag and (there or (old.attrib, old.text) == (new.attrib, new.text))
+        for old, new, there in pairs
+    )
     if not alike and not same_meaning(before.root, after.root):
         raise ProofError(f"{path}: a fix would change more than it may")
     if more := _codes_and_messages(new[1]) - _codes_and_messages(old[1]):
         raise ProofError(f"{path}: a fix would cause a new finding: {min(more)}")
-
-
-def _is_alike(old: _Element, new: _Element, touched: bool) -> bool:
-    """Return whether two elements are alike; of a ``touched`` one only the tag counts."""
-    return old.tag == new.tag and (touched or (old.attrib, old.text) == (new.attrib, new.text))
 
 
 def _codes_and_messages(findings: Iterable[Finding]) -> set[tuple[str, str]]:

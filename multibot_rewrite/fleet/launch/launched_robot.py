@@ -43,10 +43,9 @@ def launched_robot(
     InputError for a launch file that cannot be read, UsageError for an unknown placeholder."""
     if not orders:
         return None
-    mine = _own_orders(orders, words[0])
     graph = launch_of(orders, words[0])
     # What stands for the robot besides its own words: its namespace in a launch.
-    values = (value.strip("/") for it in mine for _, value in it.arguments)
+    values = (value.strip("/") for it in _own_orders(orders, words[0]) for _, value in it.arguments)
     every = {*words, *filter(None, values)}
     return with_launched(node_set, graph, known, every, parameters, release)
 
