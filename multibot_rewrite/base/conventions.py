@@ -197,6 +197,7 @@ TEAMS = {name: tuple(nodes) for nodes, name in ROWS["teams"]}
 _CHOOSES = lazy_compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 
 
+@lru_cache(maxsize=4096)
 def team(node: str) -> str:
     """Return the name of the team of nodes that take turns; a node without one is its own."""
     last = node.rpartition("/")[2]

@@ -117,9 +117,7 @@ class Naming(NamedTuple):
 
 
 def leaves_world_systems(world_systems: str | None, robots: Sequence[str]) -> bool:
-    """Return whether world systems are left to the world; raises UsageError.
-
-    By default those of several robots are: each robot would load them again."""
+    """Return whether systems are left to the world, by default for several robots; or UsageError."""
     if world_systems is None:
         return len(robots) > 1
     _refuse_unknown("world_systems", world_systems, WORLD_SYSTEMS)

@@ -317,7 +317,6 @@ def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
 
 
 def _start_differences(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:
-    """Yield a message for each printed command that differs from the planned process."""
     wanted = [Action("Node", keywords(_as_commanded(it))) for it in planned]
     given = [Action("Node", keywords(it)) for it in printed]
     yield from (it.message for it in _differences(wanted, given))

@@ -22,8 +22,10 @@ from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.launch.records import LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, launched
+from multibot_rewrite.producers.launch.spawners import NO_MANAGER
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch
+from multibot_rewrite.rules.launch.started import no_type
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import System
@@ -117,7 +119,9 @@ def _is_error_of_robot(errors: Iterable[_Error], it: Finding, seen: Index, robot
     """Return whether a finding about a fleet is an error of this robot alone."""
     # Nodes of other robots, or outside its launch files, have no part in it.
     own = _plain_error(it, seen)
-    alike = [one for one in errors if one.code == own.code and own.names <= one.names]
+    # Where nothing starts a manager, nothing is wrong with its controllers.
+    codes = (own.code, NO_MANAGER.code) if own.code == no_type.code else (own.code,)
+    alike = [one for one in errors if one.code in codes and own.names <= one.names]
     known = {part for one in alike for part in one.parts}
     if not (own.names and alike):
         return False

@@ -97,7 +97,6 @@ def _findings_of_rule(
 
 
 def _gz_topics(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, GzTopic]:
-    """Return a robot's topics in Gazebo, and its world's, by name."""
     own = {robot.spec.namespace: robot.member.inventory}
     topics, _ = bridged_topics(own, plan.fleet.naming, plan.fleet.models)
     # The topic of each sensor -> its line in the source: inserted text moves those of the result.

@@ -136,7 +136,6 @@ def _existing_hashes(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
 
 
 def _report_stale(options: argparse.Namespace, found: OutputChanges) -> int:
-    """Print the files that differ from a new build; return the exit code."""
     lines = [
         *(f"{path}: stale" for path in found.write),
         *(f"{it}: left over" for it in found.remove),

@@ -194,7 +194,6 @@ def as_json(section: PluginDefinition) -> dict[str, object]:
 
 
 def _row_json(site: SiteRow, section: PluginDefinition) -> dict[str, object]:
-    """Return a row of a section as ``--output-kind json`` writes it."""
     return {
         "path": site.path,
         "role": site.role,
@@ -312,7 +311,7 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
     """Return the only argument, a xacro file; raises UsageError."""
     missing = next((it for it in words if not os.path.lexists(it)), None)
     if missing is not None:
-        raise UsageError(f"{missing}: there is no such file or folder")
+        raise UsageError(f"{missing}: there is no such file or folder; correct the path")
     if not words:
         raise UsageError(f"{options.words[0]} is an argument of a xacro file; name the file")
     check_xacro(options, words)

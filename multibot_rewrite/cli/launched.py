@@ -51,7 +51,6 @@ def run(options: argparse.Namespace, path: str) -> int:
 
 
 def _rows_of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Iterator[_Row]:
-    """Yield a row for each node that a robot's launch files start."""
     orders = [it._replace(trusted=trust) for it in robot.launch]
     for it in launch_of(orders, robot.name).nodes:
         names = {it.name or it.executable, os.path.basename(it.executable)}

@@ -103,7 +103,6 @@ def _files_to_lint(
     refused: list[Finding] = []
 
     def refuse(error: OSError) -> None:
-        """Note a finding for a folder that cannot be read."""
         from multibot_rewrite.lint.registry import RULES
 
         level = RULES["MB102"].level
@@ -119,7 +118,7 @@ def _files_to_lint(
     if read.left_out:
         note(options, read.left_out)
     if not kept:
-        raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")
+        raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint; name a file itself")
     if not options.changed_since:
         return kept, refused
     from multibot_rewrite.lint.config.changed import changed_since  # a plain run needs no git
@@ -148,7 +147,6 @@ def _check_shared(
     from multibot_rewrite.cli.rewrite_use import check_shared  # few ask for it
 
     def linted(naming: Mapping[str, Any]) -> list[Finding]:
-        """Return the findings with these options of naming in place of the given ones."""
         changed = with_options(configured_alone, **{**given(options), **naming})
         return lint_files(paths, settings._replace(naming=changed.settings.naming))
 
@@ -242,7 +240,7 @@ def check_use(options: argparse.Namespace) -> None:
     if not paths:
         raise UsageError("no PATH given; for example: urdf-lint urdf/")
     if "" in paths:
-        raise UsageError("the name of a file is empty")
+        raise UsageError("the name of a file is empty; write its path")
     if "-" in paths and (len(paths) > 1 or options.fix or options.changed_since):
         raise UsageError("standard input is linted alone, without --fix and --changed-since")
     if options.diff and not options.fix:

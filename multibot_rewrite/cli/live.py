@@ -92,7 +92,6 @@ def graph(
         from multibot_rewrite.producers.ros.child import observe
 
         def tell(said: str | System) -> None:
-            """Show on the terminal what is waited for, or what is seen so far."""
             show(f"{looking}: {said if isinstance(said, str) else so_far(said, judge)}")
 
         asked = asked._replace(shows=judge is not None and is_screen(sys.stderr))

@@ -101,7 +101,6 @@ def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]])
     written: list[str] = []
 
     def noted() -> Iterable[tuple[str, bytes]]:
-        """Yield the items unchanged, after noting the path of each."""
         for path, data in items:
             written.append(path)
             yield path, data

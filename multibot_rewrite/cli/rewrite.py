@@ -88,7 +88,6 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
 
     def undo(other: argparse.Namespace) -> bytes:
-        """Return the description without the robot's name, by other options."""
         return _strip(other, read.data, robot)
 
     try:
@@ -110,7 +109,6 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         tell(options, f"warning: {doubt}")
 
     def made(naming: Mapping[str, Any]) -> Iterator[Rewrite]:
-        """Yield the description rewritten for each robot, with other options of naming."""
         how = {**rewriting(options), **naming, "world_systems": options.world_systems}
         return rewrite_all(source, names, again=options.force, file=file, **how)
 

@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
     options.definitions = [*configured_definitions(path), *options.definitions]
     found = explain(path, line, robot, **rewriting(options))
     if not found:
-        raise UsageError(f"{options.why}: no value starts on this line")
+        raise UsageError(f"{options.why}: no value starts on this line; name another")
     deliver_report(options, (line for it in found for line in _explanation_lines(it, path, robot)))
     return DONE
 

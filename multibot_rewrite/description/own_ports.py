@@ -188,7 +188,7 @@ def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
 
 
 def _error_for_edit_by_hand(document: Document, robot: str) -> InputError:
-    what = f"a number of {robot} or the comment before it was edited by hand"
+    what = f"a number of {robot} or the comment before it was edited by hand; restore it"
     return InputError(f"{document.file}: {what}")
 
 

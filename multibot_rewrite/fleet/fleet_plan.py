@@ -143,7 +143,6 @@ def _evidence(
 
 
 def _with_trust(file: FleetFile) -> FleetFile:
-    """Return the fleet with launch files that may run."""
     robots = (
         it._replace(launch=tuple(order._replace(trusted=True) for order in it.launch))
         for it in file.robots

@@ -72,7 +72,6 @@ def _carry(context: Context) -> None:
     register = context.register_event_handler
 
     def registered(event_handler: Any, *more: Any, **options: Any) -> None:
-        """Register an event handler that starts its actions for the current robot."""
         group = here(context)
         if any(group) and not _is_of_timers(event_handler):
             event_handler.handle = _handler_for_group(event_handler.handle, group)
@@ -138,10 +137,7 @@ def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
 
 
 def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
-    """Write a file of the fleet into the folder of this launch; returns its path.
-
-    It is the robot's own file, or the one for all robots if no robot is given.
-    """
+    """Return the path of a robot's file, or without a robot of that for all, written for the launch."""
     fleet = fleet_of(context, of.fleet)
     asked = of.robot is not None or here(context)[1] or ROBOT in context.launch_configurations
     robot = robot_of(context, of) if asked else None
@@ -190,7 +186,6 @@ def listed(context: Context, names: Text) -> list[str]:
 
 
 def _launch_argument(context: Context, key: str, what: str) -> str:
-    """Return the value of a launch argument; raises UsageError if it is not set."""
     if key not in context.launch_configurations:
         hint = f"set {what}, or put it into multibot_robots or each_robot"
         raise UsageError(f"no {what} is given; {hint}")

@@ -125,7 +125,6 @@ def _rewritten_files(
     trust: bool,
     release: str,
 ) -> Iterator[RewrittenFile]:
-    """Yield the file for each robot, by the description if there is one; raises as ``rewrite_file``."""
     check_robot_names(robots)
     read = read_whole(source, {}, trust)
     name = file or read.file
@@ -154,7 +153,6 @@ def _rewritten_files(
 
 
 def _context_of_job(job: Job | None, naming: Naming, release: str) -> Context:
-    """Return the context of a robot's description; without one, that of no known names."""
     if job is None:
         return make_context({kind: {} for kind in _DECLARED}, naming, (), release)
     described, own = job.inventories[0], job.own.plain or NO_OWN

@@ -212,7 +212,6 @@ def bridge_findings(launched: Launched) -> Iterator[Finding]:
 
 
 def _bridge_texts(it: Run) -> Iterator[_BridgeText]:
-    """Yield the texts that configure a bridge: its file, and the rows in its arguments."""
     given = it.values.get("config_file") if is_bridge(it) else None
     if given and os.path.isfile(str(given.value)):
         path = os.path.realpath(str(given.value))
@@ -234,7 +233,6 @@ def _bridge_text_findings(
 
 
 def _simulator_topics(models: Iterable[InSimulator]) -> dict[str, bridges.GzTopic]:
-    """Return the topics of models in Gazebo, and the clock, by name."""
     found = (it for model in models for it in model.topics)
     own = {f"/{it.gz.lstrip('/')}": bridges.GzTopic(it.gz_type, it.direction) for it in found}
     return {CLOCK: _CLOCK, **own}

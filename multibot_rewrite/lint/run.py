@@ -119,12 +119,10 @@ def _linted(paths: Sequence[str], settings: Settings, jobs: int, watch: Watch) -
     from multibot_rewrite.lint.failures import lost, too_long
 
     def lint(path: str) -> Linted:
-        """Return the findings of a file, and what the lint asked of the disk."""
         limit_time(settings.seconds + GRACE)
         return recorded(partial(lint_file, path, settings))
 
     def unfinished(path: str, died_of: int) -> Linted:
-        """Return the finding for a file whose worker died."""
         if died_of == signal.SIGXCPU:
             return [too_long(path, settings.seconds)], None
         return [lost(path, died_of)], None

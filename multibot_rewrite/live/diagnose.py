@@ -185,7 +185,6 @@ def _tf_topics(seen: Diagnosis) -> Iterator[str]:
 
 
 def _layout_in_words(seen: Diagnosis) -> str:
-    """Return the layout's name, or why it is not known, in words."""
     if seen.layout and seen.whose.of_names.robots:
         return seen.layout.name
     if seen.layout:

@@ -56,7 +56,6 @@ def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
 
 
 def _fleet_lines(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str]:
-    """Yield the lines of a first fleet file."""
     robots = robots_to_plan(seen)
     namespaced = any(robot.namespace for robot in robots)
     fallback = LAYOUTS[0] if namespaced else LAYOUTS[-1]

@@ -307,7 +307,6 @@ def combined_state(states: Collection[str]) -> str:
 
 
 def _crossings(edges: Iterable[DrawnEdge], robot_of: _RobotOf) -> Iterator[Crossing]:
-    """Yield the names over which robots, or a robot and a shared node, are connected."""
     found: dict[tuple[str, str, str, str], dict[str, None]] = defaultdict(dict)
     for edge in edges:
         source, target = robot_of.nodes[edge.node], robot_of.names[edge.name]

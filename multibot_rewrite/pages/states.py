@@ -91,7 +91,6 @@ def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> Stat
 
 
 def _endpoint_targets(plan: Index, seen: Index, finding: Finding) -> Targets:
-    """Return the nodes and names that a finding about endpoints is about."""
     # Nothing else is called like a node of which the finding speaks.
     one_of = {node for group in alternatives(plan.system) for node in group}
     nodes = tuple(
@@ -239,5 +238,4 @@ def _tree_rows(
 
 
 def _rule_names(codes: Iterable[str]) -> tuple[str, ...]:
-    """Return the name of each rule with blanks."""
     return tuple(RULES[code].name.replace("-", " ") for code in codes)

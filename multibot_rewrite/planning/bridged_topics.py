@@ -216,7 +216,6 @@ def plugin_topics(
 
 
 def _topics_of_sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]:
-    """Yield the topics of a sensor, bridged or not; none for one of Gazebo Classic."""
     kind = sensor.get("type", "")
     rows = rows_of(SENSORS, kind, release)
     loaded = (library_key(it.get("filename", "")) for it in sensor.iterchildren("plugin"))

@@ -115,7 +115,6 @@ def _robot_by_node(plan: System) -> Mapping[str, str]:
 def _requested_crossings(
     plan: System, numbers: Mapping[str, int], given: Sequence[str]
 ) -> Iterator[Crossing]:
-    """Yield the crossings for the topics that the user lists; raises UsageError for unknown ones."""
     robot_of = _robot_by_node(plan)
     known: dict[str, dict[str, Crossing]] = defaultdict(dict)
     sent = {(robot_of[it.node], it.name) for it in plan.ends if it.role == PUBLISHES}

@@ -55,7 +55,6 @@ def expect(
     usual = dict.fromkeys((*(it for it in defaults if it and "<" not in it), *USUAL_FRAMES))
 
     def robot(name: str) -> Robot:
-        """Return the record of a robot: its names, frames and tf topic."""
         word, own = words.get(name, name), tuple(frames.get(name, ()))
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         known = {*own, *naming.shared_frames}

@@ -90,7 +90,6 @@ def _with_rules_of_process(it: Delivery, standing: _Standing) -> Run:
 
 
 def _with_process_rules(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
-    """Return the node with its own rules, and those of its process."""
     return run._replace(rules=rules, process_namespace=namespace, process_rules=wide)
 
 

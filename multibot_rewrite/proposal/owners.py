@@ -63,7 +63,6 @@ def of_other_robots(robots: Sequence[Looked], found: Found, release: str) -> lis
 
 
 def _owners_of(file: str, robots: Sequence[Looked], known: KnownNodes) -> list[Looked]:
-    """Return the robots that a file is probably for: the nearest, whose names it has."""
     near = {it: _shared_depth(os.path.dirname(it.path), file) for it in robots}
     nearest = [it for it in robots if near[it] == max(near.values())]
     likely = [it for it in nearest if _is_called_like(file, it)] or nearest
@@ -327,7 +326,6 @@ def check_winner(its: Sequence[Fitting], robot: Looked, found: Found) -> None:
 
 
 def _is_rival(it: Fitting, best: Fitting) -> bool:
-    """Return whether a file has about as few foreign names as the best one."""
     return len(it.strange) <= _MORE * len(best.strange)
 
 

@@ -104,7 +104,6 @@ def _spaced_urdfs(found: Iterable[Description], tree: Tree) -> tuple[list[Spaced
 
 
 def _with_namespace(it: Description, data: bytes, tree: Tree) -> Spaced:
-    """Return a description prepared for the rewrite below a namespace."""
     with in_one_line():
         return Spaced(it, pipeline.prepare(data, it.path, spacing(), tree))
 

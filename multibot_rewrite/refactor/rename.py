@@ -173,7 +173,6 @@ def _check_free(
 
 
 def _name_edits(it: Description, symbol: _Symbol) -> Iterator[ValueEdit]:
-    """Yield the changes of a description's values that give the symbol its new name."""
     document, claims, _, declared, *_ = it.inventory
     renames = make_renames(it.inventory, symbol.naming)
     for claim, spelling in zip(claims, renames.values, strict=True):

@@ -62,7 +62,6 @@ def fill_template(template: FileTemplate, namespace: str, tag: str, number: int 
 
 
 def _filled_slot(slot: str, namespace: str, tag: str, number: int) -> str:
-    """Return the robot's text for a slot: its namespace, its name, or a number."""
     if slot in (NAMESPACE_SLOT, TAG_SLOT):
         return namespace if slot == NAMESPACE_SLOT else tag
     return str(int(slot[len(_NUMBER) : -len("Slot")]) + number * NUMBER_STEP)

@@ -123,10 +123,7 @@ def found_at(document: YamlText, node: yaml.Node, rule: Rule, message: str, hint
 
 
 def replaced(node: yaml.ScalarNode, new: str) -> Splice:
-    """Return the splice that gives a scalar another value, with the quotes it had or now needs.
-
-    Raises ValueError for a block scalar, which spans several lines.
-    """
+    """Return the splice of a scalar's new value, quoted as needed; raises ValueError for a block."""
     if node.style in ("|", ">"):
         raise ValueError("a block scalar is not one name")
     return Splice(node.start_mark.index, node.end_mark.index, quoted(new, node.style or ""))

@@ -185,7 +185,6 @@ def _with_running_names(plan: System, graph: System) -> System:
 
 
 def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
-    """Yield a planned end; of one with a pattern all that run, under their names."""
     if ANY not in planned.name:
         yield planned
         return
@@ -243,7 +242,6 @@ def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
 
 
 def _without_bridges(system: System, plan: System) -> System:
-    """Return the system without domain_bridges."""
     own = _domain_bridges(plan)
     return system._replace(
         nodes=tuple(it for it in system.nodes if it.name not in own),

@@ -219,7 +219,6 @@ def _pose_of(holder: _Element) -> poses.Pose | None:
 
 
 def _cylinder_edits(text: Spanned, shape: _Element) -> Iterator[Edit]:
-    """Yield the edits that make a capsule's element a cylinder."""
     start = text.starts[shape] + 1
     yield Edit(start, start + len(CAPSULE), CYLINDER, None)
     if closed := _CLOSED.match(text.source, tag_end(text.source, start - 1)):
@@ -227,7 +226,6 @@ def _cylinder_edits(text: Spanned, shape: _Element) -> Iterator[Edit]:
 
 
 def _sphere_texts(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
-    """Yield the texts of two spheres for the ends of a capsule."""
     pose, length = _pose_of(holder), number(shape.get("length"))
     spans = ((text.starts[it], end_of(text, it)) for it in holder.iterchildren("material"))
     material = b"".join(text.source[start:end] for start, end in spans)

@@ -79,11 +79,8 @@ def planned_rule(
     options = {**system_options(absence, drawn), "planned": True, "nodes": nodes}
 
     def declared(compare: _Compare) -> Rule:
-        """Return the rule for a function."""
-
         @wraps(compare)
         def check(seen: Index) -> Iterator[Finding]:
-            """Yield the function's findings, if there is a plan."""
             return compare(seen.expected, seen) if seen.expected else iter(())
 
         return declare(code, name, level, check, formats=(SYSTEM,), options=options)

@@ -30,7 +30,6 @@ def _ends(seen: Index | None, names: Iterable[str]) -> Iterator[End]:
 
 
 def _planned_ends(seen: Index, it: Finding) -> Sequence[End]:
-    """Return the ends that a plan has for the node of a finding."""
     return seen.expected.by_node.get(it.node, ()) if seen.expected else ()
 
 
@@ -55,7 +54,6 @@ def _senders(seen: Index) -> Mapping[str, Set[str]]:
 
 @once
 def _frame_senders(seen: Index) -> Mapping[str, Sequence[str]]:
-    """Return by frame the nodes that send it."""
     edges = (edge for tree in seen.trees for edge in tree.edges)
     return lists_by_key((edge.child, node) for edge in edges for node in edge.publishers)
 

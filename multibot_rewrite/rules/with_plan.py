@@ -74,7 +74,6 @@ def subject_of(plan: Index, it: Finding) -> tuple[str, ...]:
 
 
 def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:
-    """Return whether a finding's rule is about something missing."""
     return bool(rules[it.code].options["absence"])
 
 
@@ -166,7 +165,6 @@ def _is_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:
 
 
 def _is_planned(plan: Index, end: End) -> bool:
-    """Return whether a plan has an end with these nodes and names."""
     if (end.node, end.kind, end.role, end.name) in plan.by_key:
         return True
     topics = (it for it in plan.system.topics if it.name == end.name and end.role == PUBLISHES)

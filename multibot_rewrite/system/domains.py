@@ -47,7 +47,6 @@ def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
     theirs = lists_by_key((it.node, robot(it.name)) for it in seen.ends)
 
     def domain(node: str) -> int:
-        """Return the domain of a node."""
         if node in planned:
             return numbers[planned[node]]
         number = numbers[robot(node) or only(unique(filter(None, theirs[node])))]
@@ -81,7 +80,6 @@ def _part_of_domain(system: System, own: Mapping[str, int], at: int) -> System:
 
 
 def _of_domain(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
-    """Return the plan of one domain: its nodes, robots, topics and transforms."""
     part, robot = _part_of_domain(plan, own, at), whose_by_plan(plan).robot
     nodes = {it.name for it in part.nodes}
     return part._replace(

@@ -235,7 +235,6 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
 
     @cache
     def of_frame(frame: str) -> GuessedRobot | None:
-        """Return the robot whose affix a frame has; None for none."""
         first = min((by_way[way] for way in _affixes(frame) if way in by_way), default=None)
         return None if first is None else known[first]
 

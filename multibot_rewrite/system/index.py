@@ -98,7 +98,6 @@ def once(make: _Look) -> _Look:
 
     @wraps(make)
     def found(*indices: Any) -> Any:
-        """Return the value, made at the first call."""
         memo = indices[-1].memo
         if make not in memo:
             memo[make] = make(*indices)

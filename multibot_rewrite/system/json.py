@@ -36,7 +36,6 @@ def to_json(system: System) -> bytes:
 
 
 def _json_text(value: Any) -> str:
-    """Return a value as JSON; of records each is on a line of its own."""
     if has_rows(value):
         lines = (json.dumps(plain_value(it), ensure_ascii=False) for it in value)
         return "[\n  " + ",\n  ".join(lines) + "\n ]"
@@ -126,7 +125,7 @@ def json_value(data: bytes, file: str) -> object:
     except UnicodeDecodeError:
         raise InputError(f"{file}: not valid JSON: it is not UTF-8; {REMEDY}") from None
     except ValueError as error:
-        raise InputError(f"{file}: cannot be read as JSON: {error}") from None
+        raise InputError(f"{file}: cannot be read as JSON: {error}; {REMEDY}") from None
 
 
 def _record_or_object(value: dict[str, object]) -> object:

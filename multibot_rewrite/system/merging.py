@@ -148,7 +148,6 @@ def _merged_edges(frames: Iterable[Edge]) -> Iterator[Edge]:
 def _merged_environment(
     looks: Sequence[Look], nodes: Sequence[Node], endpoints: Sequence[End]
 ) -> Environment:
-    """Return the settings and limitations of several snapshots as one."""
     around = [look.snapshot.environment for look in looks]
     asked = around[0]
     peers = dict.fromkeys(peer for one in around for peer in one.static_peers)

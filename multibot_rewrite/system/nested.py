@@ -141,7 +141,6 @@ def _pop_list(value: object, key: str) -> Any:
 
 
 def _read_robot(found: Mapping[str, list[Any]], value: object) -> None:
-    """Add a robot's value, and the nodes below it, to the records that are ``found``."""
     nodes = _pop_list(value, "nodes")
     robot = reader(Robot)(value)
     found["robots"].append(robot)
@@ -149,7 +148,6 @@ def _read_robot(found: Mapping[str, list[Any]], value: object) -> None:
 
 
 def _read_node(found: Mapping[str, list[Any]], robot: str, value: object) -> None:
-    """Add a node's value, its ends and parameters, to the records that are ``found``."""
     ends, parameters = _pop_list(value, "ends"), _pop_list(value, "parameters")
     node = reader(Node)(value)
     found["nodes"].append(node if node.robot or not robot else node._replace(robot=robot))

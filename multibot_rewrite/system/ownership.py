@@ -177,7 +177,6 @@ def renamed(system: System, new: Callable[[str], str]) -> System:
         return tuple(map(one, names))
 
     def changed(records: Iterable[Any], *fields: str) -> tuple[Any, ...]:
-        """Return the records with these fields under new names."""
         return tuple(
             it._replace(**{field: one(getattr(it, field)) for field in fields}) for it in records
         )

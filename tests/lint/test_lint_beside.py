@@ -560,7 +560,7 @@ def test_a_name_of_older_releases_is_told_with_the_new_one(tmp_path: Path) -> No
     [
         ("", "MB110", "did you mean 'enable_odom_tf'?"),
         # The right one is there: the other does nothing, whatever it is near to.
-        ("    enable_odom_tf: true\n", "MB111", "nothing reads it; see "),
+        ("    enable_odom_tf: true\n", "MB111", "nothing reads it; delete it, see "),
     ],
 )
 def test_a_drive_is_given_the_name_of_another_program(

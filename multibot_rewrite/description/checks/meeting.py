@@ -63,7 +63,6 @@ def said_of(robot: str, found: Iterable[Said]) -> Iterator[Said]:
 
 
 def _unused_robot_name(document: Document) -> str:
-    """Return a name for a robot that is nowhere in the document."""
     robot = TWIN
     while robot.encode() in document.source:
         robot += "x"

@@ -70,7 +70,9 @@ class Frames(NamedTuple):
         if it is None:
             return HERE
         if name in below:
-            raise InputError(f"{self.source}: the pose of {name!r} depends on itself")
+            raise InputError(
+                f"{self.source}: the pose of {name!r} depends on itself; correct relative_to"
+            )
         written = it.element.find("pose")
         relative = "" if written is None else written.get("relative_to", "")
         base = it.within(relative or self._attached_to(it))

@@ -170,7 +170,6 @@ def _sdf_pose(element: _Element) -> Pose | None:
 
 
 def _radius_of_corners(links: Sequence[_Placed]) -> float:
-    """Return the largest distance of a shape's corner from the root's vertical axis."""
     corners = [*_corners(links, "collision")] or [*_corners(links, "visual")]
     return max((hypot(x, y) for x, y, _ in corners), default=0.0)
 

@@ -82,7 +82,6 @@ def is_unknown(section: PluginDefinition) -> bool:
 def _message_and_hint(
     part: ActivePart, definitions: Definitions, guesses: Guesses
 ) -> tuple[str, str]:
-    """Return message and hint about a part of which it is unknown what it opens."""
     if part.kind == INCLUDE:
         return (
             f"the included {part.name!r} is not read: its topics and frames stay as they are",

@@ -71,7 +71,6 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
 
 
 def _whole_robot_blocks(inventory: Inventory) -> Iterator[_Element]:
-    """Yield the ``<gazebo>`` blocks without a reference."""
     for it in inventory.document.root.iterchildren("gazebo"):
         if not it.get("reference"):
             yield it

@@ -113,7 +113,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     before = b"".join(cut(text, edits))
     mark = _BASE.search(before)
     if mark is None:
-        raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
+        raise InputError(f"{file}: multibot join did not make it; name the file that it wrote")
     found, last = [], mark.end()
     while part := _PART.match(before, last):
         name, prefix, materials, head = (word or b"" for word in part.groups())
@@ -122,7 +122,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
         stop = before.find(b" -->\n", close + len(end))
         if close < 0 or stop < 0:
             what = f"the comment at the end of part {name.decode()!r} was edited by hand"
-            raise InputError(f"{file}: {what}")
+            raise InputError(f"{file}: {what}; join the parts again")
         tail = before[close + len(end) : stop]
         whole = _unescaped(head) + before[part.end() : close] + _unescaped(tail)
         names = tuple(unquote(it) for it in materials.decode().split(",") if it)

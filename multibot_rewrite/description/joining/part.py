@@ -147,7 +147,6 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
 
 
 def _reasons_against_joining(inventory: Inventory) -> Iterator[str]:
-    """Yield each reason why a description cannot be joined."""
     if inventory.format != "robot":
         yield f"it is <{inventory.document.root.tag}>; only URDFs can be joined"
         return

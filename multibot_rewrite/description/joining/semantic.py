@@ -57,7 +57,7 @@ def renamed_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSema
     declared = declarations(part.data, part.file, tree)
     found = collect(read_document(data, file), tree, declared)
     if found.format != SRDF:
-        raise InputError(f"{file}: it is <{found.document.root.tag}> of a URDF, not an SRDF")
+        raise InputError(f"{file}: it is <{found.document.root.tag}> of a URDF; name an SRDF")
     if not part.prefix:
         return PartSemantics(part, data, file)
     kinds = (*PREFIXED, "group")

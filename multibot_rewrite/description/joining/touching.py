@@ -80,7 +80,7 @@ def _scene(
         shapes = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION)
     except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())
-        raise InputError(f"pinocchio does not read the joined description: {reason}") from None
+        raise InputError(f"pinocchio refuses it, leave out samples: {reason}") from None
     numbers = _numbered(pin, model, shapes, pairs)
     data, placed = model.createData(), shapes.createData()
 

@@ -76,10 +76,7 @@ class Meeting(NamedTuple):
 
 
 def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Iterator[RuntimeName]:
-    """Yield the names that do not contain ``word``, the robot's name.
-
-    Each name once, at its first place.
-    """
+    """Yield the names that do not contain ``word``, the robot's name, each at its first place."""
     seen: set[tuple[str, str]] = set()
     for it in _own(names, naming):
         if word not in it.name and (it.kind, it.name) not in seen:

@@ -112,7 +112,6 @@ def _hosts(root: _Element, definitions: Definitions) -> tuple[list[_Host], list[
 
 
 def _ros_nodes(hosts: Iterable[_Host], release: str) -> tuple[ReadNode, ...]:
-    """Return the ROS 2 nodes that the plugins start."""
     made = (node_of(*it, release) for it in hosts)
     return tuple(node for node in made if node is not None)
 

@@ -180,7 +180,6 @@ def _next_frame(it: XacroChild, kind: bytes) -> bytes:
 
 
 def _parsed_failure(told: Any) -> Failure:
-    """Return the failure that a child reports in JSON."""
     position, place = told["position"], told["place"]
     return Failure(
         _to_text(told["reason"]),

@@ -175,7 +175,6 @@ def _cause(reason: str) -> tuple[str, str]:
 
 
 def _failure_message(path: str, failure: Failure, reason: str, trace: Trace) -> str:
-    """Return the message for a failed expansion: place, reason, and what to do."""
     inner = alike(failure.file, path)
     inner = path if inner == os.path.normpath(path) else inner
     if not os.path.isabs(path):

@@ -89,7 +89,6 @@ def _included_text(include: _Element, file: str, above: tuple[str, ...]) -> byte
 
 
 def _try_read(data: bytes, path: str) -> Document | None:
-    """Return the document; None for a text that cannot be read."""
     with suppress(InputError):
         return read_document(data, path)
     return None

@@ -184,7 +184,6 @@ def reader(
 
     @cache
     def read(pairs: frozenset[tuple[str, str]]) -> Job:
-        """Return the job with these arguments."""
         args = dict(pairs)
         own = read_whole(source, args_for(source, urdf, args), trust)
         beside = None if urdf is None else read_whole(urdf, args_for(urdf, source, args), trust)
@@ -305,7 +304,6 @@ def _marked_job(
 
 
 def _lacks_declarations(job: Job) -> bool:
-    """Return whether a name of a link or joint is used that nothing declares."""
     said = job.inventories[0]
     found = (name for names in said.names for name in names if not name.kind)
     return any(not PARTS.isdisjoint(name.kinds) for name in found)

@@ -70,7 +70,6 @@ def marked(
 
 
 def _marked_text(text: str, words: Sequence[str]) -> str:
-    """Return a text with marks in place of the robot's names."""
     if ROBOT in text:
         # It says where the robot is: another left in it is the left finger.
         return text.replace(ROBOT, MARKS[0])
@@ -148,7 +147,6 @@ def marked_texts(plain: "Inventory", marked: "Inventory") -> NameTexts:
 
 
 def _names_by_kind(inventory: "Inventory") -> dict[str, list[str]]:
-    """Return the names that are declared or used, by kind."""
     every = (it for names in inventory.names for it in names if it.kind not in DECLARED_KINDS)
     found = lists_by_key((it.kind, it.text) for it in every)
     # A reference that an argument misses is of another kind without its declaration.

@@ -37,10 +37,7 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
 
 @outside
 def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
-    """Return the folder of $(find NAME) in ``file``; empty if there is none.
-
-    Other packages in the same repository are found as well.
-    """
+    """Return the folder of $(find NAME) in ``file``, also in its repository; empty if there is none."""
     known = package_folders(name, file, roots)
     own = _own_package(os.path.dirname(os.path.abspath(file)))
     if known or own is None or ".git" in entries(own[1]):
@@ -69,7 +66,6 @@ def is_for_ros_1(file: str) -> bool:
 def _candidate_folders(
     name: str, here: str, roots: tuple[str, ...], prefixes: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return the folders that may be a package: the file's own, below the roots, installed."""
     own = _own_package(here)
     found = [own[1]] if own is not None and own[0] == name else []
     shares = (os.path.join(prefix, "share", name) for prefix in prefixes)

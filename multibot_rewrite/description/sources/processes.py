@@ -58,7 +58,6 @@ class Server:
         return self._send_command(ENDED if ended else END, pid, [])
 
     def _send_command(self, command: bytes, pid: int, descriptors: list[int]) -> int:
-        """Send the server a command; return the number that it answers with."""
         with self.lock:
             try:
                 socket.send_fds(self.control, [COMMAND.pack(command, pid)], descriptors)

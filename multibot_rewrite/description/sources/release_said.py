@@ -112,7 +112,6 @@ def release_in_repository(file: str) -> str:
 
 @outside
 def _ci_files(top: str) -> tuple[str, ...]:
-    """Return the files of a repository's CI on GitHub and GitLab."""
     found: list[str] = []
     for place in (".github/workflows", ".gitlab-ci.yml"):
         path = os.path.join(top, place)
@@ -124,7 +123,6 @@ def _ci_files(top: str) -> tuple[str, ...]:
 
 
 def _releases_in(path: str) -> set[str]:
-    """Return the releases that a CI file or package names."""
     lines = _LINE.findall(bytes_if_read(path))
     found = {it.decode().lower() for line in lines for it in _RELEASE.findall(line)}
     return {ENDED.get(it, it) for it in found}

@@ -58,9 +58,7 @@ class Document(NamedTuple):
 
 
 def read_document(source: bytes, file: str, placed: bool = True) -> Document:
-    """Return the parsed document; raises InputError with place, cause and remedy.
-
-    Without ``placed`` elements are numbered and not looked for in the bytes."""
+    """Return the parsed document; raises InputError. Not ``placed``: elements have no offsets."""
     _refuse_unreadable_bytes(source, file)
     root, is_mended = _parsed(source, file)
     elements = list(root.iter("*"))
@@ -144,7 +142,7 @@ def _refuse_wide(document: Document) -> None:
         count = len(elements[at].attrib) + source.count(b" xmlns:", start, tag_end(source, start))
         if count > MAX_ATTRIBUTES:
             line, column = locate(source, start)
-            what = f"an element has {count:,} attributes, over the limit of {MAX_ATTRIBUTES:,}"
+            what = f"an element has {count:,} attributes, over {MAX_ATTRIBUTES:,}; leave some out"
             raise InputError(f"{file}:{line}:{column}: {what}")
 
 

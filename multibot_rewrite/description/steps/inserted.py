@@ -136,7 +136,8 @@ def _read_marker(document: Document, comment: etree._Element, words: list[str]) 
     filled = rest[1:] if rest[:1] == ["filled"] else []
     known = rest in ([], ["expanded"]) or (filled and all(map(is_step, filled)))
     if not number[1:].isdigit() or not known:
-        raise InputError(f"{document.file}:{comment.sourceline}:1: this marker was edited by hand")
+        place = f"{document.file}:{comment.sourceline}:1"
+        raise InputError(f"{place}: this marker was edited by hand; undo that")
     return Marker(comment, robot, int(number[1:]), rest == ["expanded"], tuple(filled))
 
 
@@ -158,7 +159,6 @@ def removals(document: Document, robot: str) -> list[Edit]:
 def _removal_edits(
     document: Document, marker: Marker, starts: dict[etree._Element, int]
 ) -> Iterator[Edit]:
-    """Yield the edits that take out what a marker's comment says was inserted."""
     source = document.source
     parent = marker.comment.getparent()
     inserted = list(marker.comment.itersiblings("*"))[: marker.elements]
@@ -186,7 +186,7 @@ def _removal_edits(
 
 def _error_for_edit_by_hand(document: Document, marker: Marker) -> InputError:
     place = f"{document.file}:{marker.comment.sourceline}:1"
-    return InputError(f"{place}: the elements this marker counts were edited by hand")
+    return InputError(f"{place}: the elements this marker counts were edited by hand; undo that")
 
 
 def end_of(source: bytes, start: int) -> int:

@@ -51,7 +51,6 @@ def strip_edits(
             edits += _claim_edits(document.source, claim, spans)
 
     def unspell(kind: str, name: str) -> str:
-        """Return a name without the robot's name."""
         return unspelled(naming, kind, name, robot)
 
     claims = [it for it in inventory.claims if not is_inserted(it)] if edits else inventory.claims
@@ -97,7 +96,6 @@ def inside_of(removed: Iterable[Edit]) -> Callable[[Claim], bool]:
 
 
 def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> list[Edit]:
-    """Return the edits that take the spans of characters out of a claimed value."""
     value = claim.start, claim.attribute, claim.value
     if claim.site.form == "prefix" and spans == [(0, len(claim.value))]:
         slot = value_slot(source, *value)

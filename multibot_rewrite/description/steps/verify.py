@@ -243,7 +243,6 @@ def added_once(it: Evidence) -> None:
 
 
 def _check_single(it: Evidence, added: list[etree._Element], beside: list[etree._Element]) -> None:
-    """Raise ProofError if an element is there both inserted and not."""
     there = Counter(map(_key, beside))
     for element in added:
         if there[_key(element)] > 1:

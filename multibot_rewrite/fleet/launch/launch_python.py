@@ -129,7 +129,6 @@ def _call_lines(it: Function, name: str) -> Iterator[str]:
 
 
 def _robot_lines(it: RobotStarts) -> Iterator[str]:
-    """Yield the lines that start what a robot runs, in a group of its own."""
     for name, why in it.left:
         if why:
             text = comment(f"Not started: {name} ({why})")

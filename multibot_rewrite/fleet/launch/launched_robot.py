@@ -111,7 +111,6 @@ def keep(order: LaunchOrder, graph: LaunchGraph) -> None:
 
 
 def _with_full_path(order: LaunchOrder) -> LaunchOrder:
-    """Return the order with the real path of its launch file."""
     return order._replace(file=os.path.abspath(order.file))
 
 
@@ -131,7 +130,6 @@ def times_of(file: str) -> tuple[int, ...]:
 
 
 def _own_orders(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
-    """Return the launch files with the robot's name filled into their arguments."""
     pairs = ((it, filled(dict(it.arguments), robot)) for it in orders)
     return [it._replace(arguments=tuple(given.items())) for it, given in pairs]
 

@@ -91,7 +91,6 @@ def _controllers(plan: FleetPlan) -> Iterator[str]:
 
 
 def _start_parameters(plan: FleetPlan, pose: InitialPose) -> bytes:
-    """Return a parameter file with the start pose of amcl."""
     import yaml
 
     tables = plan.fleet.table.runs

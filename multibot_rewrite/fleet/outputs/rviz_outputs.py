@@ -108,7 +108,6 @@ def _robot_displays(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
 
 
 def _displays_of(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
-    """Yield a display for each topic of a robot that RViz can show."""
     kinds = rviz_data()["shown"]
     for topic in sorted(shown.of_type(kinds)):
         kind = kinds[shown.sent[topic]]
@@ -196,7 +195,6 @@ def bridged_window(
 
 
 def _empty_displays(document: YamlText) -> Iterator[Finding]:
-    """Yield a finding on displays that show nothing in the window for all robots."""
     shown = ((it, {at.kind for at in it.places}) for it in leaves(read_config(document).displays))
     found = [it for it, kinds in shown if TOPIC in kinds and TF_PREFIX not in kinds]
     if found:
@@ -318,9 +316,7 @@ def why_for_each(path: str, layout: str) -> str:
 
 
 def windows(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[tuple[str, Start]]:
-    """Return (robot, what opens it) for each window, with "" for one of all robots.
-
-    MoveIt's displays read the parameters of their process."""
+    """Return (robot, what opens it) for each window, with "" for one of all robots."""
     given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
     if cell := plan.file.cell:
         given[cell.name] = parameters_path(cell)

@@ -70,7 +70,6 @@ def copied(plan: FleetPlan) -> Iterator[OutputFile]:
 
 
 def _launch_commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]:
-    """Yield the vendor's commands for a robot, simulated or real, in the fleet's release."""
     kind = SIMULATED if is_simulated(robot) else REAL
     for it in shapes()[plan.file.shape].launch if plan.file.shape else ():
         if it.robots in ("", kind) and (

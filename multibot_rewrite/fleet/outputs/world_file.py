@@ -118,7 +118,6 @@ def _world_topics(world: str, systems: Sequence[str]) -> dict[str, str]:
 
 
 def _robots_by_description(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
-    """Yield the robots of each description, with what a world calls them there."""
     found = lists_by_key((it.spec.simulated or it.spec.description, it) for it in robots)
     for alike in found.values():
         root = alike[0].member.source.root

@@ -146,7 +146,6 @@ def _zenoh_key(domain: int, end: End) -> str:
 
 
 def _with_latched_keys(keys: Sequence[str]) -> tuple[str, ...]:
-    """Return keys, and those under which Zenoh keeps their last messages."""
     return (*keys, *(f"{key}/@adv/**" for key in keys))
 
 

@@ -222,7 +222,6 @@ class LoadedRobot:
         return self._fleet.node_text(self._path_in_build(file))
 
     def _path_in_build(self, file: str) -> str:
-        """Return the path of the robot's version of a file, or of the one for all robots."""
         name = os.path.basename(file)
         own = self._own_path(file)
         return own if own in self._fleet.files else name

@@ -33,9 +33,11 @@ from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.file.simulator_switch import hardware_classes, may_be_simulated
+from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.robots.member import Member, member, with_text
 from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.planning.transforms import links_of, tree_of
+from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATORS
 from multibot_rewrite.related_files.names.rename_map import (
     RelatedNames,
     related_file_names,
@@ -138,7 +140,6 @@ def read_jobs(
 
     @cache
     def read_in(source: str, urdf: str | None, file: str) -> Reader:
-        """Return the reader of a description, made once."""
         return reader(source, naming, urdf, tuple(definitions), file, trust, release)
 
     def read(robot: RobotSpec, path: str, urdf: str = "") -> Reader:
@@ -199,10 +200,18 @@ def rewrite_robots(
     made = (it for key, group in groups.items() for it in _rewritten_group(group, jobs[key]))
     found = {it.spec.name: it for it in made}
     classic = any(it.is_classic for it in found.values())
-    return [
+    alike = [
         it._replace(is_classic=it.is_classic or (classic and not _names_simulator(it)))
         for it in (found[robot.name] for robot in robots)
     ]
+    return [*map(_in_launched_simulator, alike)]
+
+
+def _in_launched_simulator(it: RewrittenRobot) -> RewrittenRobot:
+    """Return a robot in the simulator that its launch files start, if they start one."""
+    nodes = launch_of(it.spec.launch, it.spec.words[0]).nodes if it.spec.launch else ()
+    kinds = {node.package == CLASSIC for node in nodes if node.package in SIMULATORS}
+    return it._replace(is_classic=kinds.pop()) if len(kinds) == 1 else it
 
 
 def _names_simulator(it: RewrittenRobot) -> bool:
@@ -213,7 +222,6 @@ def _names_simulator(it: RewrittenRobot) -> bool:
 
 
 def _rewritten_group(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
-    """Yield the robots of one description, rewritten with their SRDF and model."""
     naming, own = jobs.description.naming, jobs.description.own.plain
     if jobs.srdf:
         own = {**jobs.srdf.own.plain, **own}

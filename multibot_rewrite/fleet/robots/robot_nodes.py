@@ -186,7 +186,8 @@ def _is_sent_beside(
     is_launched: bool,
 ) -> bool:
     """Return whether something else than the simulator sends a transform that places the robot."""
-    if sends_too(nodes, free, sent):
+    # Below another frame as well, where the vendor bridges none.
+    if sends_too(nodes, free, sent, is_launched):
         return True
     # A vendor who bridges none of two that place the robot has a node that does.
     held = {it.get("link", "") for it in member.source.root.iterfind("joint/child")}
@@ -389,7 +390,6 @@ def apart(
 
 
 def _runs_once(name: str, once: bool, file: FleetFile) -> bool:
-    """Return whether one node of this name serves all robots, by the fleet file or by ``once``."""
     return (once or name in file.shared_nodes) and name not in file.own_nodes
 
 

@@ -28,12 +28,10 @@ def meshes_of(scene: ShownScene, tell: Callable[[str], None] = lambda _: None) -
     prepare_meshes()
 
     def within(path: str) -> Mesh | str:
-        """Return a mesh, or why it cannot be shown, within a time limit."""
         limit_time(MESH_SECONDS)
         return load_mesh(path)
 
     def lost(path: str, _: int) -> str:
-        """Return the reason for a mesh whose worker died."""
         return f"{path}: reading it takes more than {MESH_SECONDS:g} s, or too much memory"
 
     with worker_pool(within, paths, lost, min(2, len(paths))) as workers:

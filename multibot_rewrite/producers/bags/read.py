@@ -65,7 +65,6 @@ def read_bag(path: str) -> Recording:
         raise InputError(f"{path}: there is no such bag; name a folder, or a file .mcap or .db3")
 
     def lost(_: object, died_of: int) -> InputError:
-        """Return the error for a bag whose reading a signal ended."""
         return InputError(f"{path}: the process that read it was ended by signal {died_of}")
 
     most = max(LEAST_UNPACKED, MOST_PACKED * max(map(os.path.getsize, files), default=0))
@@ -155,7 +154,6 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
 
 
 def _first_messages(reader: Reader, connections: list[Connection], many: int) -> Iterator[bytes]:
-    """Yield the bytes of the first messages of a topic."""
     return (bytes(data) for _, _, data in islice(reader.messages(connections), many))
 
 

@@ -205,7 +205,6 @@ def _with_ids(text: str, binding: Ids) -> str:
 
 
 def _with_bound_ids(endpoint: Endpoint, binding: Ids) -> Endpoint:
-    """Return an endpoint with the ids of a binding filled into all its texts."""
     name = _with_ids(endpoint.name, binding)
     # A name that is made at run time is known now, so a rule reaches it.
     return endpoint._replace(

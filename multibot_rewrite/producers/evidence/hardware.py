@@ -124,7 +124,6 @@ def _plugin(hardware: _Element) -> _Plugin | None:
 
 @lru_cache
 def _plugins() -> Mapping[str, _Plugin]:
-    """Return what is known of hardware plugins, by class."""
     text = own_text(__file__, _TABLE)
     top = table(read_yaml_with_lines(text, _TABLE), _TABLE)
     found = {name: table(item, name, ("claims", "nodes", SOURCE_KEY)) for name, item in top.items()}

@@ -146,7 +146,6 @@ def _work(order: LaunchOrder, folder: str, first: str, seconds: float, place: in
     inbox, outbox = os.fdopen(place, "rb", closefd=False), os.fdopen(place, "wb", closefd=False)
 
     def send(data: bytes) -> None:
-        """Write all of the bytes to the parent."""
         outbox.write(data)
         outbox.flush()
 

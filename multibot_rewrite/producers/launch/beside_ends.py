@@ -51,7 +51,6 @@ def passed_on(it: Run, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Ed
 
 
 def _with_prefix(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
-    """Return the transforms with a prefix before parent and child."""
     return [edge_of(prefix + it.parent, prefix + it.child, it.static) for it in edges]
 
 

@@ -140,7 +140,6 @@ def refused_rows(it: Run) -> Iterator[str]:
 
 
 def _argument_rows(program: str, words: Sequence[str]) -> Iterator[Row]:
-    """Yield the rows of a bridge's arguments."""
     for word in words:
         row = _ROW.fullmatch(word)
         if program in _BRIDGES and row is not None:
@@ -159,7 +158,6 @@ def _rows_of(row: re.Match[str]) -> Iterator[Row]:
 
 
 def _topic_rows(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
-    """Yield the row, or one for each way, of a topic in an argument."""
     full = type_ if type_.count("/") > 1 else type_.replace("/", "/msg/")
     for role in _ROLES.get(way, ()):
         yield Row(Endpoint(TOPIC, role, name, full), inside)

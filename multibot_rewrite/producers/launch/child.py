@@ -77,7 +77,6 @@ def _lines(root: yaml.Node | None) -> dict[str, int]:
 
 
 def _node_of(full: str, it: Mapping[str, Any], place: Place) -> LaunchedNode:
-    """Return the node of a system model, by its full name."""
     above, _, last = full.rpartition("/")
     words = {key: str(it.get(key) or "") for key in _KEPT_TEXT}
     # Without a name in the launch file the last word is the executable's.

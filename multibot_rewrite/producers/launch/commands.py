@@ -115,7 +115,6 @@ def see_no_machine(lost: list[str]) -> None:
     """Hide devices and all that only one machine has; ``lost`` gets what a file asks for."""
 
     def tell(what: str) -> None:
-        """Note what a launch file asked for of the machine."""
         said = f"it looks at {what} of the machine, and sees nothing of it here; --trust shows it"
         if said not in lost:
             lost.append(said)
@@ -124,7 +123,6 @@ def see_no_machine(lost: list[str]) -> None:
         """Return a function: ``answer`` for a path of the machine, for another what ``look`` does."""
 
         def looked(path: Any = os.curdir, *words: Any, **options: Any) -> Any:
-            """Return the answer for a path."""
             named = path is not None and not isinstance(path, int)
             place = os.path.abspath(os.fsdecode(path)) if named else ""
             if not f"{place}/".startswith(_OF_MACHINE) or place in _EVERYWHERE:
@@ -135,7 +133,6 @@ def see_no_machine(lost: list[str]) -> None:
         return looked
 
     def is_not_there(path: str) -> Any:
-        """Raise FileNotFoundError."""
         raise FileNotFoundError(ENOENT, os.strerror(ENOENT), path)
 
     scan = os.scandir

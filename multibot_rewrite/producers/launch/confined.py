@@ -57,10 +57,7 @@ class NotFencedError(Exception):
 
 
 def confine(order: LaunchOrder, folder: str, more: Sequence[str], seconds: float) -> None:
-    """Put the fences around this process, for good: it may write in ``folder`` and read ``more``.
-
-    Raises NotFencedError.
-    """
+    """Fence in this process, which may write in ``folder`` and read ``more``; raises NotFencedError."""
     access = Access(order.file, Reach(order.roots), None)
     files = Files((*_readable_paths(access), *more), (folder, os.devnull))
     hidden = {it for it in os.environ if not it.startswith((*VARIABLES, *_PLAIN))}

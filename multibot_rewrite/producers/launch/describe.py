@@ -343,7 +343,6 @@ def _node_attribute(action: Any, name: str) -> Any:
 
 
 def _command_line(action: Any, who: str, here: Visit) -> Iterator[str]:
-    """Yield a node's arguments, those for ROS behind ``--ros-args``."""
     own, ros = (
         [*_known_arguments(_node_attribute(action, it) or (), who, here)]
         for it in ("arguments", "ros_arguments")
@@ -479,7 +478,6 @@ def _plain_value(value: Any) -> Any:
 def _parameter_texts(
     values: Iterable[tuple[str, str]], files: Iterable[str], here: Visit
 ) -> Iterator[ParameterText]:
-    """Yield the parameter files, then the single values as a text."""
     for path in files:
         yield from _text_of_file(path, here)
     if written := params_text(values):

@@ -104,7 +104,6 @@ def asks_who_listens(node: NodeFacts) -> bool:
 
 
 def _with_decided_ends(node: NodeFacts, decide: Decide) -> NodeFacts:
-    """Return the node without ends whose condition does not hold, and with the rest of the others."""
     made = [(it, settled(it.when, decide)) for it in node.endpoints]
     ends = tuple(it._replace(when=when) for it, when in made if when is not None)
     return node._replace(endpoints=ends)

@@ -122,7 +122,6 @@ def _model_text(words: Mapping[str, str]) -> str:
 
 
 def _read_model(name: str, text: str, place: Place, release: str, spawned: bool) -> Model | None:
-    """Return a model; None if its description cannot be read."""
     try:
         reading = read(text.encode(), place.file, load_definitions((), release, ros=ROS_2))
     except InputError:

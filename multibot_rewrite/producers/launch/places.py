@@ -35,7 +35,6 @@ def _noting_place(made: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(made)
     def keeping(self: Any, *words: Any, **options: Any) -> None:
-        """Note the line of the launch file, once, then call the constructor."""
         # An action for a robot is made again when it runs.
         if getattr(self, _KEPT, None) is None:
             setattr(self, _KEPT, _maker(sys._getframe(1)))

@@ -34,7 +34,6 @@ def keep_reads() -> Reads:
     found = Reads([], [])
 
     def opened(event: str, words: tuple[Any, ...]) -> None:
-        """Note the path that is opened, if it is of a file that launch files read."""
         path = words[0] if event == "open" else None
         if isinstance(path, str) and path.endswith(_ENDS) and not path.startswith(_OWN):
             found.paths.append(path)
@@ -68,7 +67,6 @@ class _Xacro:
         expand = vars(module)["process_doc"]
 
         def process_doc(doc: Any, *words: Any, **options: Any) -> Any:
-            """Note the xacro and its arguments, then expand it."""
             given = {"mappings": next(iter(words), None), **options}["mappings"] or {}
             pairs = tuple((key, it) for key, it in dict(given).items() if isinstance(it, str))
             last = [it for it in self.found.paths if it.endswith(_XACRO)][-1:]

@@ -65,7 +65,6 @@ def _unnamed(it: LaunchedNode, robot: str, places: Mapping[int, int]) -> Launche
     """Return what is started without the name of its robot, and what it waits for by its new place."""
 
     def home(text: str) -> str:
-        """Return a namespace without the robot's name."""
         return without(f"{text}/", robot).rstrip("/")
 
     return it._replace(

@@ -68,7 +68,6 @@ def ros2_run(words: Sequence[str]) -> tuple[str, str, tuple[str, ...]] | None:
 
 
 def _split_rule(text: str) -> tuple[str, str]:
-    """Return (from, to) of a remap rule."""
     old, _, new = text.partition(":=")
     return old, new
 
@@ -175,7 +174,6 @@ def texts_of(
 
 
 def _controllers_of(node: LaunchedNode) -> Iterator[Spawned]:
-    """Yield the controllers that a spawner loads, by its arguments."""
     for given in _options_of_each(node.arguments):
         words = [word for text in given.controller_ros_args for word in text.split()]
         above = given.namespace or node.namespace

@@ -165,7 +165,6 @@ class HeaderSamples:
                 self._began = self._since[topic.name] = time.monotonic()
 
     def _receive(self, topic: SensorTopic, data: bytes, mark: Mark = None) -> None:
-        """Note frame, joints, pose and age of a message; end the subscription when that is enough."""
         if topic.type == CLOCK_TYPE:
             self._clock = (self._clock or Pace()).after(read_stamp(data) or 0.0)
             return

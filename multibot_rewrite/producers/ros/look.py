@@ -193,7 +193,6 @@ def _subscribe(
     read = read_tf if type_ == assemble.TF_TYPES[0] else read_transform
 
     def received(data: bytes, mark: Mark) -> None:
-        """Hand on a tf message that can be read."""
         message = read(data)
         if message:
             callback(message, mark)

@@ -289,7 +289,6 @@ def _snapshot(
     settled: tuple[str, float, Sequence[str]],
     more: Iterable[Caveat] = (),
 ) -> System:
-    """Return the snapshot with all that was seen and heard."""
     processes = assemble.processes_by_node(endpoints)
     enclaves = queries.enclaves(session.node)
     nodes = assemble.nodes_with_process(names, processes, enclaves)

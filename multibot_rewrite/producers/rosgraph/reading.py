@@ -100,7 +100,7 @@ def _without_parameters(value: dict[str, Any]) -> dict[str, Any]:
 def _checked_name(name: str, file: str) -> str:
     """Return a full name; raises InputError for another one."""
     if not name.startswith("/"):
-        raise InputError(f"{file}: {name!r} is not a full name that starts with /")
+        raise InputError(f"{file}: {name!r} is not a full name, write a slash in front")
     return name
 
 
@@ -151,7 +151,7 @@ def _qos(topic: "Topic", file: str) -> Qos | None:
     )
     for known, number in given:
         if not 0 <= number < len(known):
-            raise InputError(f"{file}: {topic.name}: qos: there is no policy {number}")
+            raise InputError(f"{file}: {topic.name}: no policy {number}; record the graph again")
     history, reliability, durability, liveliness = (known[number] for known, number in given)
     if {reliability, durability} == {UNKNOWN}:
         return None

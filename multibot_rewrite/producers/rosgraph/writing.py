@@ -62,7 +62,6 @@ def _node_message(name: str, ends: Sequence[End]) -> dict[str, object]:
     plain = [it for it in ends if it not in parts]
 
     def of(kind: str, role: str) -> list[End]:
-        """Return the node's ends of a kind and role."""
         return [it for it in plain if (it.kind, it.role) == (kind, role)]
 
     return {
@@ -133,7 +132,6 @@ def _qos_message(qos: Qos | None) -> dict[str, object]:
 
 
 def _number_of_policy(known: Sequence[str], word: str) -> int:
-    """Return the number that a message has for a QoS policy."""
     return known.index(word if word in known else UNKNOWN)
 
 

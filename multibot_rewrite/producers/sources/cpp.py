@@ -276,7 +276,6 @@ def _read_declaration(node: Node, place: Place) -> Iterator[Call | Value]:
 
 
 def _read_assignment(node: Node, place: Place) -> Iterator[Value]:
-    """Yield the value that an assignment gives a variable."""
     left, right = (node.child_by_field_name(it) for it in ("left", "right"))
     plain = text_of(node.child_by_field_name("operator")) == "="
     text = evaluated(right) if plain else ANY
@@ -303,7 +302,6 @@ def _read_default(node: Node, place: Place) -> Iterator[Value]:
 
 
 def _read_alias(node: Node, place: Place) -> Iterator[Alias]:
-    """Yield the alias of ``typedef`` or ``using``: name and type."""
     name = text_of(node.child_by_field_name("name") or node.child_by_field_name("declarator"))
     type_ = text_of(node.child_by_field_name("type"))
     yield Alias(_scope_of(node)[0], name, type_)

@@ -245,7 +245,6 @@ def start_of(folder: str, program: str) -> Start | None:
 
 
 def _start_in(files: tuple[str, ...], function: str = "", class_: str = "") -> Start:
-    """Return a start in the first of some files, with their real paths."""
     real = tuple(map(os.path.realpath, files))
     return Start(real, real[0], function, class_)
 
@@ -309,7 +308,6 @@ def _start_by_call(folder: str, call: CmakeCall, program: str) -> Start | None:
 
 
 def _existing_sources(folder: str, words: tuple[str, ...], any_end: bool = False) -> Iterator[str]:
-    """Yield the paths of a call's words that are source files."""
     for it in words:
         path = os.path.join(folder, it)
         if (any_end or it.endswith(tuple(READERS))) and os.path.isfile(path):

@@ -252,7 +252,6 @@ def _condition(node: ast.expr) -> str:
 
 
 def _both_conditions(one: str, other: str) -> str:
-    """Return two conditions as one, each part once."""
     return "&".join(dict.fromkeys(filter(None, (*one.split("&"), *other.split("&")))))
 
 

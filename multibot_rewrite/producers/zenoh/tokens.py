@@ -129,7 +129,6 @@ def read_qos(text: str) -> Qos:
 
 
 def _text_of_number(known: Sequence[str], text: str, default: str) -> str:
-    """Return the text that a number stands for; raises for one out of range."""
     number = _number(text, known.index(default))
     if number >= len(known):
         raise _Malformed

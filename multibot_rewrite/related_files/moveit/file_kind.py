@@ -93,7 +93,6 @@ def is_merge(key: yaml.Node) -> bool:
 
 
 def _claim_below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
-    """Note the names below a node in ``walk``, as the rule of its key says."""
     if (id(node), id(rule)) in walk.seen:
         return
     walk.seen.add((id(node), id(rule)))

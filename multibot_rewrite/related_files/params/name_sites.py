@@ -90,7 +90,6 @@ def params_at(node: NodeParameters, name: str, key: yaml.ScalarNode) -> list[Par
 
 
 def _walk_mapping(job: _Job, body: yaml.MappingNode, states: list[_State]) -> None:
-    """Note the names in the parameters of a mapping, and in those below it."""
     seen = set()
     for key, value in body.value:
         if not isinstance(key, yaml.ScalarNode):
@@ -153,7 +152,6 @@ def _claim_parameter(
 
 
 def _key_site(mark: _Mark, param: Param) -> Site:
-    """Return the site of a name in a key's segment."""
     key, segment, kind = mark
     words = str(key.value).split(".")
     at, size = sum(len(it) + 1 for it in words[:segment]), len(words[segment])
@@ -165,7 +163,6 @@ def _key_site(mark: _Mark, param: Param) -> Site:
 def _value_sites(
     job: _Job, key: yaml.ScalarNode, scalars: list[yaml.Node], param: Param | None, reach: str
 ) -> None:
-    """Note the site of each name in a parameter's values; values of unknown kind are unclaimed."""
     kind = param.kind if param else ""
     # The releases in which the node takes off a slash that a frame starts with.
     strips = job.section.node.strips if job.section.node else ""

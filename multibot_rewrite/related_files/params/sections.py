@@ -154,7 +154,6 @@ def identify_sections(
     }
 
     def is_namesake(it: ParamSection) -> bool:
-        """Return whether a section's node is another package's that only has the same name."""
         # A name says less than parameters: the plugins of mavros are called camera and imu.
         if not packages or not it.wild or it.node is None or it.node.package in packages:
             return False

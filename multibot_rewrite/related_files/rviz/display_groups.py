@@ -106,7 +106,6 @@ def robot_groups(job: RvizJob) -> Iterator[Splice]:
         return
 
     def shared(one: RvizItem) -> bool:
-        """Return whether all robots share a display."""
         return one.block.start not in job.own and not for_one_process(one)
 
     for one in shown:
@@ -134,7 +133,6 @@ def _group_of_robot(job: RvizJob, at: int) -> str:
     document, robot = job.config.document, job.robots[at]
 
     def own(one: RvizItem) -> bool:
-        """Return whether each robot has a display for itself."""
         return one.block.start in job.own and not for_one_process(one)
 
     def made(one: RvizItem) -> Iterator[Splice]:

@@ -90,7 +90,6 @@ def _in_one_window(config: RvizConfig, robots: Robots, world: str) -> Iterator[F
     """Yield findings for a fixed frame or a view that cannot be that of all robots."""
 
     def differs(node: yaml.Node | None) -> TypeGuard[yaml.ScalarNode]:
-        """Return whether a scalar names a frame that is another one for some robot."""
         if not isinstance(node, yaml.ScalarNode):
             return False
         return any(frame_of(node, robot) != node.value for robot in robots)

@@ -133,7 +133,6 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
 
 
 def _wheels_of_model(plugin: _Element) -> ModelWheels | None:
-    """Return the wheels of the SDF model around a plugin; None for a URDF."""
     above = plugin.getparent()
     return model_wheels(above) if above is not None and above.tag == "model" else None
 

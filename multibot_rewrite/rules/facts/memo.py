@@ -28,7 +28,6 @@ def memoized(make: Callable[[Subject], _Made]) -> Callable[[Subject], _Made]:
 
     @wraps(make)
     def look_up(subject: Subject) -> _Made:
-        """Return the kept result for the subject, made at first."""
         memo = subject.memo
         if make not in memo:
             memo[make] = make(subject)

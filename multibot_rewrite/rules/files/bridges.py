@@ -46,7 +46,6 @@ def bridge_row(file: NamedFile) -> Iterator[Finding]:
 
 
 def _bridge_rows(file: NamedFile) -> list[yaml.Node]:
-    """Return the rows of a bridge's file; none for a file that is no list."""
     return items(file.document.root) if file.document else []
 
 

@@ -34,7 +34,6 @@ def _rule_of_files(
     """Return a rule of files that a rule of descriptions stands for: any of the finders reports it."""
 
     def found(file: NamedFile) -> Iterator[Finding]:
-        """Yield what the finders find."""
         for find in finders:
             yield from find(file)
 

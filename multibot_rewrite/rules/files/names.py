@@ -194,7 +194,6 @@ def _guessed(file: NamedFile) -> Iterator[Finding]:
 
 
 def _listed_keys(sites: Iterable[Site]) -> str:
-    """Return the keys of sites, each once, as a text."""
     return ", ".join(dict.fromkeys(it.key for it in sites))
 
 

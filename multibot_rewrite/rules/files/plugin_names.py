@@ -301,7 +301,7 @@ def _not_set(file: NamedFile, section: Section, fact: Declared, words: str) -> I
         there = there or is_set_in_other_file(file, section.title, f"{section.at}{name}")
         if not there and (listed is None or (isinstance(listed, list) and word in listed)):
             message = f"{section.title}: {name} is missing"
-            yield remark_at(first, message, f"the node asks for it; see {fact.source}", WARNING)
+            yield remark_at(first, message, f"add it; see {fact.source}", WARNING)
 
 
 def _blocks(section: Section, path: str) -> Iterator[tuple[str, yaml.ScalarNode]]:

@@ -165,7 +165,6 @@ def _sections(file: NamedFile) -> Iterator[Section]:
 
 
 def _moveit_section(file: NamedFile) -> Iterator[Section]:
-    """Yield the section that the parameters of a MoveIt file make."""
     kind = find_kind(file.document) if file.document else None
     if file.document is None or kind is None or is_for_ros_1(file.file):
         return

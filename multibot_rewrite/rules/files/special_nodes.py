@@ -134,7 +134,9 @@ def _incomplete_filters(section: Section, filters: _Filters) -> Iterator[Finding
         first = next(iter(parts.values()))
         for word in (it for it in ("name", "type") if it not in parts):
             message = f"{section.title}: filter{number} has no {word}"
-            yield remark_at(first.key, message, "the chain is not configured without", ERROR)
+            yield remark_at(
+                first.key, message, "add it: the chain is not configured without", ERROR
+            )
         name = str(parts["name"].value) if "name" in parts else ""
         if name and name in names:
             message = f"{section.title}: filter{number} has the name {name!r}, as {names[name]} has"

@@ -75,7 +75,7 @@ def _wheel_faults(subject: Subject, section: Section) -> list[Finding] | None:
         return None
     node = values[_RIGHT].node
     rolling = rolling_faults(subject.robot, left[0], right[0])
-    hint = "the controller takes them for wheels that roll"
+    hint = "correct it in the description, or name the wheels that roll"
     return [
         *_size_faults(subject, values, left, right),
         *_axis_faults(node, left, right),
@@ -93,7 +93,6 @@ def _wheels(subject: Subject, given: Setting | None) -> list[Wheel]:
 def _size_faults(
     subject: Subject, values: _Values, left: Sequence[Wheel], right: Sequence[Wheel]
 ) -> Iterator[Finding]:
-    """Yield findings if the distance or the radius of wheels differs from the description's."""
     many = bool(left[1:])
     apart = separation(subject.robot, left[0], right[0], many)
     round_ = radius(subject.robot, (*left, *right))
@@ -117,7 +116,6 @@ def _size_faults(
 def _axis_faults(
     node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]
 ) -> Iterator[Finding]:
-    """Yield findings if left and right wheels are swapped, or their axes opposite."""
     one, other = left[0], right[0]
     names = f"{one.joint.name!r} and {other.joint.name!r}"
     if are_opposite(one, other):

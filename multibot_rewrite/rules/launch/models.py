@@ -159,7 +159,6 @@ class _Row(NamedTuple):
 
 
 def _bridge_rows(launched: Launched) -> Iterator[_Row]:
-    """Yield the rows of all bridges, with full names."""
     for it in launched.nodes:
         for end, inside in bridged_by(it):
             # A node with a name that ROS refuses does not start.

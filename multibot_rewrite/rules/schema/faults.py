@@ -169,7 +169,9 @@ def _unknown_attributes(
             yield fault("not-read", element, key, where)
     if missing:
         names = " and no ".join(map(repr, missing))
-        yield fault("missing", element, None, f"<{element.tag}> has no {names}")
+        yield fault(
+            "missing", element, None, f"<{element.tag}> has no {names}", f"add {missing[0]}="
+        )
 
 
 def _child_faults(element: etree._Element, section: UrdfPart, schema: Schema) -> Iterator[Problem]:
@@ -192,7 +194,7 @@ def _child_faults(element: etree._Element, section: UrdfPart, schema: Schema) ->
         else:
             yield from _unknown_child(element, child, section, schema, meant)
     for tag in missing:
-        yield fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
+        yield fault("missing", element, None, f"<{element.tag}> has no <{tag}>", f"add <{tag}>")
     # Children that are read once and come again with other content.
     for tag, times in count.items():
         declared = section.children.get(tag)

@@ -134,7 +134,7 @@ def _child_faults(
     row = _of_version(rows, version)
     if row.first > version:
         message = f"<{tag}> in <{home}> is of SDF {_version_text(row.first)}"
-        hint = f"Gazebo of this release reads up to SDF {_version_text(version)}"
+        hint = f"leave it out: Gazebo of this release reads up to SDF {_version_text(version)}"
         yield fault("later", child, None, message, hint)
         return
     yield from _value_faults(child, "", row, text_of(child), known, version)

@@ -285,7 +285,6 @@ def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, s
 
 
 def _number_hint(value: str, odd: str) -> str:
-    """Return what to do about a value that is no number; empty without a hint."""
     if "," in value:
         single = re.fullmatch(r"\s*[-+]?\d+,\d+\s*", value)
         return "use a decimal point" if single else "separate numbers by spaces, not commas"

@@ -81,7 +81,6 @@ def untold(found: Iterable[Finding]) -> list[Finding]:
 
 
 def _changes(before: System, seen: Index) -> Iterator[_Change]:
-    """Yield the changes of nodes, endpoints, transforms, frames and parameters."""
     old, new = _by_key(before.ends), _by_key(seen.system.ends)
     nodes = {it.name for it in before.nodes}
     for key, end in new.items():
@@ -206,7 +205,6 @@ def _edges_by_place(edges: Iterable[Edge]) -> Mapping[_Place, Edge]:
 
 
 def _is_moved(old: Edge, new: Edge) -> bool:
-    """Return whether a fixed transform has other numbers than before."""
     fixed = old.static and new.static and old.transform and new.transform
     both = zip(old.transform, new.transform, strict=True) if fixed else ()
     return any(abs(it - was) > _SAME for was, it in both)
@@ -230,7 +228,6 @@ def _names_in_messages(system: System) -> Iterator[tuple[str, str]]:
 
 
 def _changed_parameters(before: System, seen: Index) -> Iterator[_Change]:
-    """Yield for each node the parameters that have other values."""
     was = {(it.node, it.name): it.value for it in before.parameters}
     changed: dict[str, list[str]] = defaultdict(list)
     for it in seen.system.parameters:

@@ -177,7 +177,6 @@ def _part_values(seen: Index) -> _Values:
 
 
 def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Value, _Value]]) -> Iterator[Finding]:
-    """Yield for each robot the parts that it has elsewhere than the others."""
     by_robot = lists_by_key((robot, (own, other)) for robot, own, other in odd)
     for robot, pairs in by_robot.items():
         listed = (f"{own.name} {own.value}, not {other.value}" for own, other in pairs)

@@ -136,7 +136,6 @@ def _published_instead(
         return lacking
 
     def is_of_another(it: str) -> bool:
-        """Return whether a topic is another robot's."""
         if it not in published or nodes_of(published[it].publishers) == (end.node,):
             return False
         return not _is_of_other_robot(seen, end.name, it) and (not owner or mine(it))
@@ -230,7 +229,6 @@ def _without_own_name(end: End) -> str:
 def _missed_topic(
     seen: Index, end: End, other: Ends, level: str, more: Sequence[End] = ()
 ) -> Finding:
-    """Return the finding about a subscriber of a topic that is sent under another name."""
     robot = seen.robot(end.node) or seen.robot(end.name)
     sender = min(nodes_of(other.publishers), key=lambda it: seen.robot(it) != robot)
     also = f" (and so does {shorten(nodes_of(more))})" if more else ""
@@ -307,7 +305,6 @@ _NOBODY = _Served({}, {}, NONE)
 
 @once
 def _served_names(seen: Index) -> Mapping[tuple[str, str], _Served]:
-    """Return by kind and type the names that are served."""
     found: dict[tuple[str, str], dict[str, Ends]] = defaultdict(dict)
     for (kind, name), ends in seen.by_name.items():
         if ends.servers:
@@ -319,7 +316,6 @@ def _served_names(seen: Index) -> Mapping[tuple[str, str], _Served]:
 
 
 def _unserved_findings(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
-    """Yield the finding about a client whose name nobody serves."""
     listed = listed_in_vain(seen, end)
     outside = f"/{last_word(listed)}" if listed and f"/{last_word(listed)}" in seen.nodes else ""
     near = "" if outside else _served_instead(seen, end, served) or in_other_namespace(seen, end)

@@ -116,7 +116,6 @@ def _is_added_by_driver(plan: Index, robot: str, name: str, children: Mapping[st
 
 
 def _first_word(plan: Index, frame: str, robot: str) -> str:
-    """Return the first word of a frame without the robot's name."""
     plain = plan.of_frames.without_robot(frame, robot)
     ends = (at for at, letter in enumerate(plain) if letter in "/" + SEPARATORS)
     return plain[: next(ends, None)]

@@ -82,7 +82,6 @@ def is_absent(plan: Index, seen: Index, robot: str) -> bool:
 
 
 def _is_missing(plan: Index, seen: Index, robot: Robot) -> bool:
-    """Return whether no node of a robot runs, and some are planned."""
     return is_absent(plan, seen, robot.name) and bool(_missing_nodes(plan, seen, robot))
 
 
@@ -245,7 +244,7 @@ def _too_many_recorded(plan: Index, seen: Index) -> Iterator[Finding]:
         there, most = len(_publishers(seen, name)), 1 if name in single else len(own)
         if own and there > most and seen.robot(name) and not any("*" in it for it in own):
             message = f"{name} has {there} publishers, planned are {most}"
-            hint = f"planned: {shorten(sorted(own), SEVERAL)}"
+            hint = f"stop the others than {shorten(sorted(own), SEVERAL)}"
             yield sender_not_planned.finding(message, hint, robot=seen.robot(name), names=(name,))
 
 

@@ -94,7 +94,6 @@ def _tail(seen: Index, name: str) -> str:
 
 
 def _velocities(seen: Index) -> Iterator[Ends]:
-    """Yield the topics with velocities."""
     return (it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type))
 
 

@@ -58,7 +58,6 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
 
 
 def _called_tf(seen: Index) -> list[Tree]:
-    """Return the trees whose topic is called tf."""
     return [it for it in seen.trees if last_word(seen.plain(it.topic)) == TF]
 
 

@@ -158,7 +158,6 @@ def frame_not_sent(seen: Index) -> Iterator[Finding]:
 
 
 def _usual_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
-    """Return the finding about a usual frame that nothing sends; or None."""
     plain = seen.plain_frame(it.frame)
     bare = it.frame.rpartition("/")[2]
     # Without a robot's name before it, it is sent.
@@ -206,7 +205,6 @@ def _sent_transform(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | Non
 
 
 def _virtual_joint_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
-    """Return the finding about a virtual joint's transform that nothing sends; or None."""
     above = {edge.child: edge.parent for edge in edges}
     if it.frame in above and it.parent in {*above, *above.values()}:
         return None
@@ -228,7 +226,6 @@ def _virtual_joint_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Fi
 
 
 def _lookup_finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
-    """Return the finding about a frame that a node looks up."""
     return frame_not_sent.finding(
         message, hint, level=level,
         robot=seen.robot(it.node), node=it.node, names=(it.frame,), **last_place([it]),

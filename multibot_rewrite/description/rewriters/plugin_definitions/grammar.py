@@ -123,7 +123,7 @@ def read_header(place: str, row: str) -> tuple[str, ...]:
             f"{place}: section [{row.strip()} must be [TYPE NAME...], TYPE one of {', '.join(_HEADERS)}"
         )
     if len(set(words)) < len(words):
-        raise DefinitionsError(f"{place}: section [{head}] has a name twice")
+        raise DefinitionsError(f"{place}: section [{head}] has a name twice; remove one")
     return tuple(words)
 
 
@@ -150,7 +150,7 @@ def read_section(
         for other in before:
             if share_release(site.releases, other.releases):
                 raise DefinitionsError(
-                    f"{file}:{number}: {site.path} is there already, at line {other.line}"
+                    f"{file}:{number}: {site.path} is in line {other.line} already; remove one"
                 )
         before.append(site)
         sites[f"{site.path} {site.releases}".strip()] = site
@@ -173,7 +173,6 @@ def assemble(
     below = settings.get("model_namespace", "")
 
     def words(key: str) -> tuple[str, ...]:
-        """Return the words of a setting; none if it is missing."""
         return tuple(settings.get(key, "").split())
 
     return PluginDefinition(
@@ -279,7 +278,6 @@ def _no_releases(words: str) -> str:
 
 
 def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
-    """Raise DefinitionsError for an unknown kind, option or form."""
     kinds = list(kinds)
     if not kinds:
         raise DefinitionsError(f"{place}: {path} has no kind, use one of {', '.join(KINDS)}")

@@ -99,7 +99,7 @@ def _value_in_row(place: str, path: str, words: list[str]) -> Iterator[Value]:
     if type_ not in TYPES:
         raise DefinitionsError(f"{place}: {path} {type_} is no type, use one of {', '.join(TYPES)}")
     if releases and not is_release_words(releases):
-        raise DefinitionsError(f"{place}: {path} releases={releases} names no releases")
+        raise DefinitionsError(f"{place}: {path} releases={releases} has no releases: write jazzy+")
     # What it is called where values are looked up.
     name, is_attribute, _ = path.partition("@")
     if path.startswith(_NAMED):

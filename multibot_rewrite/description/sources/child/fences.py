@@ -62,7 +62,6 @@ def enclose(readable: Iterable[str] = (), writable: Iterable[str] = ()) -> bool:
 
 
 def _allow_path(ruleset: int, path: str, rights: int) -> None:
-    """Let the Landlock rules permit these rights below a path."""
     place = os.open(path, os.O_PATH | os.O_CLOEXEC)
     try:
         if not stat.S_ISDIR(os.fstat(place).st_mode):
@@ -152,8 +151,6 @@ def refuse_all() -> bool:
 
 
 def _refusing_function(name: str) -> Callable[..., NoReturn]:
-    """Return a function that raises PermissionError in place of one of ``os``."""
-
     def refuse(*arguments: object, **_: object) -> NoReturn:
         raise PermissionError(f"refused: os.{name}{str(arguments)[:80]}")
 
@@ -161,7 +158,6 @@ def _refusing_function(name: str) -> Callable[..., NoReturn]:
 
 
 def _refuse_event(event: str, arguments: tuple[object, ...]) -> None:
-    """Raise PermissionError for an audit event, unless it is harmless."""
     # Constants of the code alone: there is nothing that a file could change.
     if event not in {"compile", "exec", "builtins.id", "object.__getattr__", "array.__new__"}:
         raise PermissionError(f"refused: {event} {str(arguments)[:80]}")

@@ -199,7 +199,6 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
 
 
 def _as_pieced_text(value: object, part: str) -> str:
-    """Return a value as text that knows its pieces."""
     text = str(value)
     return (
         text

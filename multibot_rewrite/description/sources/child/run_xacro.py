@@ -190,7 +190,6 @@ def marking(xacro: Any, marks: Marks) -> None:
     parse, handle = xacro.parse, xacro.handle_macro_call
 
     def read(given: Any, filename: str | None = None) -> Any:
-        """Return the parsed document, its elements marked."""
         document = parse(given, filename)
         if given is None and filename is not None:
             marks.mark(document, filename)

@@ -90,7 +90,6 @@ def _serve_next(control: socket.socket, children: set[int]) -> bool:
 
 
 def _forked_child(control: socket.socket, descriptor: int) -> int:
-    """Fork a child that does the work; return its process number."""
     pid = os.fork()
     if not pid:
         leave = os._exit
@@ -131,7 +130,6 @@ def _work(descriptor: int) -> None:
     held = fences.put_up(request["fences"], request["seconds"])
 
     def send(data: bytes) -> None:
-        """Write all of the bytes to the parent."""
         view = memoryview(data)
         while view:
             view = view[outbox.write(view) :]

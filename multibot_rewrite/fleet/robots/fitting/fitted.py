@@ -111,12 +111,19 @@ def _edges_in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterat
     yield from (it for node in nodes if node.name not in free for it in sent_by(node, ""))
 
 
-def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[Edge]) -> bool:
-    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``."""
+def sends_too(
+    nodes: Iterable[NodeFacts],
+    free: Collection[str],
+    sent: Sequence[Edge],
+    any_parent: bool = False,
+) -> bool:
+    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``.
+
+    With ``any_parent`` it may place that below another frame."""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
     sure = (it for it in nodes if not it.when)
-    own = {_placed_body(it, bodies) for it in _edges_in_files(sure, free)}
-    return any(_placed_body(it, bodies) in own for it in sent)
+    own = {_placed_body(it, bodies, any_parent) for it in _edges_in_files(sure, free)}
+    return any(_placed_body(it, bodies, any_parent) in own for it in sent)
 
 
 def have_two_parents(sent: Iterable[Edge]) -> bool:
@@ -124,9 +131,9 @@ def have_two_parents(sent: Iterable[Edge]) -> bool:
     return any(len(it) > 1 for it in sets_by_key((it.child, it.parent) for it in sent).values())
 
 
-def _placed_body(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
-    """Return (parent, child) that a transform places; all frames of the robot's body count as ""."""
-    return edge.parent, "" if edge.child in bodies else edge.child
+def _placed_body(edge: Edge, bodies: Collection[str], any_parent: bool = False) -> tuple[str, str]:
+    """Return (parent, child) of a transform; the robot's body, and any parent if asked, are ""."""
+    return "" if any_parent else edge.parent, "" if edge.child in bodies else edge.child
 
 
 def _transform_switch(node: NodeFacts) -> str:

@@ -57,7 +57,6 @@ def wheel_size(subject: Subject) -> Iterator[Problem]:
 
 
 def _size_problem(drive: Drive, name: str, value: float, words: str, measured: float) -> Problem:
-    """Return the problem of a drive's size that differs from the measured one."""
     element = drive.sizes[name]
     said = "" if element is not None else "not said, and "
     apart = " apart" if "sep" in name.lower() else ""
@@ -83,7 +82,7 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
                 message = f"{left.joint.name!r} is the left and the right wheel"
                 yield Problem(right.named, message, "", "name the joint of the other wheel")
             for words in rolling_faults(drive.robot, left, right):
-                yield Problem(right.named, words, "", "the drive takes them for wheels that roll")
+                yield Problem(right.named, words, "", "correct it, or name other wheels")
             if are_opposite(left, right):
                 names = f"{left.joint.name!r} and {right.joint.name!r}"
                 message = f"the axes of wheels {names} point in opposite directions"

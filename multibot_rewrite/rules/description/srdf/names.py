@@ -40,7 +40,6 @@ def of_moveit(
 
     @wraps(check)
     def found(subject: Subject) -> Iterator[Problem]:
-        """Yield the problems, if MoveIt reads the SRDF."""
         if not is_pinocchios(subject.document.root):
             yield from check(subject)
 
@@ -60,7 +59,6 @@ def undeclared_for_moveit(code: str) -> Callable[[Subject], Iterator[Problem]]:
     """Return a check that yields a rule's undeclared names in an SRDF for MoveIt."""
 
     def check(subject: Subject) -> Iterator[Problem]:
-        """Yield the undeclared names, if MoveIt reads the SRDF."""
         return undeclared(code, subject)
 
     return of_moveit(check)

@@ -228,7 +228,6 @@ def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _inverted_bounds(interface: _Element) -> Iterator[Problem]:
-    """Yield a problem if an interface's min is above its max."""
     params = {it.get("name"): it for it in interface.iterchildren("param")}
     found = {name: number(text_of(params[name])) for name in ("min", "max") if name in params}
     low, high = found.get("min"), found.get("max")
@@ -246,7 +245,7 @@ def _beyond_limits(joint: Joint, interface: _Element, low: float, high: float) -
         if not low * _SLACK - 0.01 <= value <= high * _SLACK + 0.01:
             name = interface.get("name")
             message = f"{param.get('name')} of {name} of joint {joint.name!r} is {value:g}"
-            hint = f"its <limit> is {low:g} to {high:g}"
+            hint = f"stay in its <limit>: {low:g} to {high:g}"
             yield Problem(param, message, "", hint, level="" if name == "position" else NOTE)
 
 
