@@ -30,6 +30,8 @@ def urdf_lint() -> int:
 
 
 def _run(name: str) -> int:
+    """Run the ``main`` of a module of commands; return the exit code."""
+
     def interrupted(*_: object) -> None:
         program = name.replace("_", "-")
         try:

@@ -128,7 +128,7 @@ def test_robots_are_a_number_beside_arguments_of_a_xacro() -> None:
     assert robots(options) == ["robot1", "robot2", "robot3"]
     assert xacro_args(options) == {"name": "a:=b", "empty": ""}
     check_xacro(options, [ROVER, ARM])
-    with pytest.raises(UsageError, match=r"NAME:=VALUE is for xacro, a\.urdf is no xacro"):
+    with pytest.raises(UsageError, match=r"a\.urdf is no xacro: leave out NAME:=VALUE"):
         check_xacro(options, ["a.urdf"])
 
 
@@ -225,7 +225,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
             "multibot inspect --strict",
             "--fail-on does that, which urdf-postfix, urdf-lint, multibot",
         ),
-        ("urdf-postfix nosuch.yaml robot1", "nosuch.yaml is not there\n"),
+        ("urdf-postfix nosuch.yaml robot1", "nosuch.yaml is not there; correct the path\n"),
         (
             "multibot plan nosuch.yaml",
             "nosuch.yaml is not there; multibot init PATH... writes a fleet",

@@ -151,7 +151,7 @@ def _topic_for_mux(seen: Index, ends: Ends) -> str:
 
 @once
 def _velocity_ends(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends]]]:
-    """Return who sends velocities, and so is no drive; who also reads them; each robot's velocities."""
+    """Return three: nodes that send velocities, those that also read them, velocities by robot."""
     moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
     senders = {it.node for ends in moving for it in ends.publishers}
     asked = (it for it in moving if it.publishers or not is_from_outside(it.name))
@@ -169,7 +169,7 @@ def _obeyed_commands(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
 
 
 def _plain_types(ends: Ends) -> set[str]:
-    """Return its types; stamped or not is a switch of the sender."""
+    """Return the types of a topic, as if none were stamped: that is a switch of the sender."""
     return {it.removesuffix(STAMPED) for it in ends.type.split(" | ")}
 
 

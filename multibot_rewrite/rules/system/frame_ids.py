@@ -243,7 +243,7 @@ def _frame_of_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str
 
 
 def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:
-    """Return frame, robot and senders -> the messages of nodes other than viewers."""
+    """Return by frame, robot and senders the messages of nodes other than viewers."""
     found: dict[tuple[str, str, tuple[str, ...]], list[_Message]] = defaultdict(list)
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)

@@ -93,7 +93,7 @@ def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
 
 
 def _stale(seen: Index, ends: Iterable[End]) -> str:
-    """Say that the type of one of the ends is known of an earlier version of its node only."""
+    """Return a note that an end's type is known of an earlier version of its node only; or ""."""
     from multibot_rewrite.knowledge.node_sets import older_node  # a fault alone needs it
 
     known = ((seen.node[it.node].known, it.type) for it in ends if it.node in seen.node)
@@ -166,7 +166,7 @@ def _types(end: End) -> Iterator[tuple[str, str]]:
 def _difference(
     name: str, giver: str, asked: Mapping[str, str], given: Mapping[str, str]
 ) -> tuple[str, str]:
-    """Return how two sides' types (each with one hash) differ, and what to do."""
+    """Return (how two sides' types, each with one hash, differ, what to do)."""
     wanted, there = (", ".join(sorted(it)) for it in (asked, given))
     if asked.keys() & given.keys():
         return (
@@ -320,7 +320,7 @@ def _ask_latched(nodes: Sequence[str], name: str) -> Cause:
 
 
 def _is_latched(ends: Ends) -> bool:
-    """Return whether it is latched, by type or by name: a map, a description, static transforms."""
+    """Return whether a topic is latched, by type or by name: a map, a description, static tf."""
     words_ = ends.name.split("/")[-2:]
     return (ends.type == MAP and "map" in words_) or bool({*words_} & {DESCRIPTION, "tf_static"})
 
