@@ -98,7 +98,8 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
     for key, end in new.items():
         tool, did_not = seen.is_tool(end.node), f"{DOES[end.role]} {end.name}, and did not"
         if key in old:
-            if (was := _type_and_qos(old[key])) != (now := _type_and_qos(end)) and not tool:
+            was, now = (" ".join((it.type, *qos_words(it))) for it in (old[key], end))
+            if was != now and not tool:
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
         elif heeded := _obeyed_by(seen, end):
@@ -129,11 +130,6 @@ def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
         and it.type != TF
         and not it.type.startswith(words.OF_EVERY_NODE)
     }
-
-
-def _type_and_qos(end: End) -> str:
-    """Return type and unusual QoS of an end as a text."""
-    return " ".join((end.type, *qos_words(end)))
 
 
 def _obeyed_by(seen: Index, end: End) -> str:
