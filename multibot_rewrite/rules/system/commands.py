@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import (
     EVERYBODYS,
@@ -25,7 +25,7 @@ from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC, End
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.words import is_hidden, is_tool, is_viewer, last_word
 
 # A person drives with these.
@@ -227,13 +227,17 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
     """Report also tools: a joystick of one robot is not for another."""
     for (kind, name), ends in seen.by_name.items():
         owner = seen.robot(name)
-        crossing = _ends_of_others(seen, owner, (*ends.publishers, *ends.clients)) if owner else ()
+        crossing = [
+            it
+            for it in ((*ends.publishers, *ends.clients) if owner else ())
+            if seen.robot(it.node) not in ("", owner)
+        ]
         if not crossing:
             continue
         order = kind == TOPIC and (name in seen.orders or _is_waited_for(seen, ends))
-        senders = ends.publishers if order else ends.clients
+        role = PUBLISHES if order else CALLS
         served = kind == TOPIC or ends.servers
-        for node in nodes_of(_ends_of_others(seen, owner, senders)) if served else ():
+        for node in nodes_of(it for it in crossing if it.role == role) if served else ():
             robot = seen.robot(node)
             # Who has both coordinates the two; a service that its own robot has not is for others.
             own = seen.of_robot(robot, kind, seen.plain(name))
@@ -249,11 +253,6 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
                 message, **names_another(robot, owner, rules)._asdict(),
                 robot=robot, node=node, names=(name,),
             )  # fmt: skip
-
-
-def _ends_of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
-    """Return the ends of nodes of other robots."""
-    return [it for it in ends if seen.robot(it.node) not in ("", owner)]
 
 
 def _is_waited_for(seen: Index, ends: Ends) -> bool:

@@ -2,7 +2,7 @@
 """Dangers of names: a subscriber or client whose other side has nearly the same name, two servers."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
@@ -51,7 +51,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
         by_kind: dict[str, list[End]] = {}
         there = done_elsewhere(seen, ends)
         lost = there and not has_likes_of(seen, seen.robot(ends.name), there)
-        for end in _each_node(ends.subscribers):
+        for end in {it.node: it for it in ends.subscribers}.values():
             if is_viewer(end.node) or end.sure != RUNS:
                 continue
             # What chooses between several inputs seldom has all of them.
@@ -99,10 +99,6 @@ def _outside_reader(seen: Index, end: End, names: Sequence[str]) -> Finding:
         node=end.node, names=(end.name, names[0]), **last_place([end]),
         remaps=() if several else (Remap(end.node, end.name, names[0]),),
     )  # fmt: skip
-
-
-def _each_node(ends: Iterable[End]) -> Iterator[End]:
-    return iter({end.node: end for end in ends}.values())
 
 
 def _published_instead(
@@ -265,7 +261,7 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     """Yield clients whose server has another name. A service that nobody serves may be optional."""
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
-            for end in (it for it in _each_node(ends.clients) if it.sure == RUNS):
+            for end in {it.node: it for it in ends.clients if it.sure == RUNS}.values():
                 served = _served_names(seen).get((end.kind, end.type), _NOBODY)
                 yield from _unserved_findings(seen, end, served)
 
