@@ -7,7 +7,7 @@ whatever name a property or a macro has it. Several at a time are not tried."""
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import redirect_stderr
+from contextlib import redirect_stderr, suppress
 from io import StringIO
 from itertools import chain, islice
 from types import MappingProxyType
@@ -16,6 +16,8 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.joining.part import reasons_against_joining
+from multibot_rewrite.description.reports.xacro_arguments import declared_in
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
@@ -79,11 +81,22 @@ def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
             made.append(Description(path, inventory_of(data, path, tree, urdfs), read))
         except InputError as error:
             unread[path] = str(error)
+    made += _included(found.parts, tree, how)
     return Package(found, tuple(made), unread)
 
 
+def _included(paths: Iterable[str], tree: Tree, how: Expanding) -> Iterator[Description]:
+    """Yield the files that others include and that are complete robots themselves."""
+    for path in paths:
+        with suppress(InputError):
+            data, read = read_text(path, how)
+            inventory = inventory_of(data, path, tree)
+            if inventory.declared.get("joint") and not any(reasons_against_joining(inventory)):
+                yield Description(path, inventory, read)
+
+
 def read_text(
-    path: str, how: Expanding, texts: Mapping[str, bytes] | None = None
+    path: str, how: Expanding, texts: Mapping[str, bytes] | None = None, in_pieces: bool = True
 ) -> tuple[bytes, Expansion | None]:
     """Return the text of a description, with ``texts`` of changed files by real path."""
     # Raises InputError.
@@ -93,7 +106,7 @@ def read_text(
         return data, None
     # What xacro warns about is not said here.
     with redirect_stderr(StringIO()):
-        read = expand_traced(path, data, how.arguments, None, how.reach, True, known)
+        read = expand_traced(path, data, how.arguments, None, how.reach, in_pieces, known)
     return read.data, read
 
 
@@ -165,12 +178,7 @@ def _other_values(
     words = set(
         chain.from_iterable(_compared_words(str(it)) for one in elements for it in one.values())
     )
-    # The arguments with their defaults; the first one counts.
-    defaults: dict[str, str] = {}
-    for it in elements:
-        if str(it.tag).endswith("xacro}arg"):
-            defaults.setdefault(it.get("name", ""), it.get("default", ""))
-    for name, default in defaults.items():
+    for name, default in declared_in(sources).items():
         if name in given:
             continue
         names = [name]

@@ -344,8 +344,10 @@ def test_an_argument_with_the_name_of_the_robot_is_one(package: Path) -> None:
 
 
 def test_an_argument_for_something_else_is_none(package: Path) -> None:
-    own = '<xacro:arg name="prefix" default=""/><gazebo reference="$(arg prefix)base"/>\n'
-    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format(own))
+    own = '<xacro:arg name="prefix" default=""/><xacro:property name="p" value="$(arg prefix)"/>\n'
+    mesh = '<visual><geometry><mesh filename="${p}a.stl"/></geometry></visual>'
+    text = ROBOT.replace('"base"/>', f'"base">{mesh}</link>').replace("  <link", f"{own}  <link", 1)
+    (package / "urdf/r.urdf.xacro").write_text(text.replace("{}", JOINT))
     made = adopt(str(package))
     assert (made.argument, dict(made.already)) == ("robot_prefix", {})
 
