@@ -320,7 +320,7 @@ def test_what_refers_to_files_refers_to_the_new_ones(tmp_path: Path) -> None:
         Path(str(it.description)).stem: Path(str(it.description)).read_bytes() for it in given
     }
     gone = made.data.replace(b'<mesh filename="../hand/m/a&amp;b.stl"/>', b"")
-    with pytest.raises(InputError, match="behind a comment 'multibot was' was edited by hand"):
+    with pytest.raises(InputError, match="followed a comment 'multibot was' was edited by hand"):
         split(gone)
     plain = etree.fromstring(join(given).data).iter("parameters")
     assert [(it.text or "").strip() for it in plain] == [
