@@ -10,7 +10,7 @@ from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli.output import deliver_changed, detail, note, note_unread, verified_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
-from multibot_rewrite.refactor.rename import MOST_MENTIONS, Renaming, rename_symbol
+from multibot_rewrite.refactor.rename import Renaming, rename_symbol
 
 
 def run(options: argparse.Namespace) -> int:
@@ -41,5 +41,5 @@ def _print_result(options: argparse.Namespace, made: Renaming) -> None:
         lines = f"{plural(len(left), 'line')} with {options.old!r}"
         shown = shorten((it.place for it in left), SEVERAL)
         note(options, f"left as they are: {lines}: {shown}")
-        for one in left[:MOST_MENTIONS]:
+        for one in left:
             detail(options, f"  {one.place}: {one.why}")

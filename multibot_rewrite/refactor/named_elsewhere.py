@@ -28,7 +28,7 @@ _DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")
 _BESIDE = (*_CODE, *_PAGES, *_DATA, ".xml")
 _LAUNCH = re.compile(r"[._]launch\.\w+$|/launch/[^/]*$")
 _SECTION = re.compile(rb"^([A-Za-z]\w*):[^\n]*\n(?:\s*#[^\n]*\n)*\s+ros__parameters:", re.MULTILINE)
-# Of one file so many lines are listed.
+# Of one file so many lines are listed with their name, the others as numbers.
 _MOST = 20
 
 
@@ -75,10 +75,11 @@ def _lines(
             put = it.start(1) and data[it.start(1) - 1 : it.start(1)] in b"/}_"
             verb = "puts together" if put and path.endswith(_CODE) else "names"
             found.setdefault(locate(data, it.start(1))[0], (verb, it[1].decode()))
-    for line, (verb, name) in list(found.items())[: _MOST if why else None]:
+    most = _MOST if why else len(found)
+    for line, (verb, name) in list(found.items())[:most]:
         yield Left(f"{path}:{line}", f"{who} {verb} {name!r}{why}")
-    if why and len(found) > _MOST:
-        yield Left(path, f"{who} names such names in {len(found) - _MOST} lines more")
+    if more := ", ".join(map(str, [*found][most:])):
+        yield Left(path, f"{who} names such names in other lines, too: {more}")
 
 
 def root_sections(paths: Collection[str]) -> Iterator[Left]:

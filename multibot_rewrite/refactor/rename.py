@@ -62,7 +62,6 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "topic": ("topic", "subtopic"),
 }
 _NAME = re.compile(r"[^\s<>&\"'{}$]+")
-MOST_MENTIONS = 50
 
 
 class Renaming(NamedTuple):

@@ -353,14 +353,14 @@ def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) ->
     rename._print_result(given, options(**usual))  # type: ignore[arg-type]
     assert capsys.readouterr().err == "multibot: link a -> b: 3 places in 2 files; verified\n"
     few = ", ".join(f"f:{at}" for at in range(5))
-    left = [options(place=f"f:{at}", why="odd") for at in range(rename.MOST_MENTIONS + 1)]
+    left = [options(place=f"f:{at}", why="odd") for at in range(60)]
     more = {**usual, "unread": {"p": "p: odd", "q": ""}, "left": left}
     rename._print_result(given, options(**more))  # type: ignore[arg-type]
     assert capsys.readouterr().err.splitlines() == [
         "multibot: link a -> b: 3 places in 2 files; verified, 2 descriptions not read",
         "multibot: not checked: p: odd", "multibot: not checked: q",
         f"multibot: left as they are: {len(left)} lines with 'a': {few} and {len(left) - 5} more",
-        *(f"multibot:   f:{at}: odd" for at in range(rename.MOST_MENTIONS)),
+        *(f"multibot:   f:{at}: odd" for at in range(60)),
     ]  # fmt: skip
     rename._print_result(options(**{**vars(given), "verbose": False}), options(**more))  # type: ignore[arg-type]
     assert capsys.readouterr().err.endswith(f": {few} and {len(left) - 5} more\n")
