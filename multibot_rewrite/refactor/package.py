@@ -15,12 +15,14 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.description.joining.part import reasons_against_joining
 from multibot_rewrite.description.reports.xacro_arguments import declared_in
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
+from multibot_rewrite.description.sources.known_arguments import known_arguments
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
@@ -65,7 +67,7 @@ class Package(NamedTuple):
 
 
 def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
-    """Read every description in a folder; raises UsageError for one that is not there."""
+    """Read every description in a folder; raises UsageError for a folder or argument not there."""
     found = search([folder])
     texts: dict[str, tuple[bytes, Expansion | None]] = {}
     unread: dict[str, str] = {}
@@ -82,6 +84,10 @@ def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
         except InputError as error:
             unread[path] = str(error)
     made += _included(found.parts, tree, how)
+    known = known_arguments(data for it in made for data in it.sources.values())
+    if (lacking := known.lacks(how.arguments)) and made and not unread:
+        near = did_you_mean_one_of(lacking[0], known.names) or "leave it out"
+        raise UsageError(f"{folder}: no xacro has the argument {lacking[0]!r}; {near}")
     return Package(found, tuple(made), unread)
 
 

@@ -197,6 +197,8 @@ def test_an_srdf_follows_its_urdf(tmp_path: Path) -> None:
 def test_wrong_names_are_refused(package: Path, old: str, new: str, kind: str, said: str) -> None:
     with pytest.raises(UsageError, match=said):
         rename_symbol(old, new, str(package), kind=kind)
+    with pytest.raises(UsageError, match="no xacro has the argument 'size'; leave it out"):
+        rename_symbol("base_link", "x", str(package), xacro_args={"size": "1"})
 
 
 @pytest.mark.more
