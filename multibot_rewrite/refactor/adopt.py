@@ -40,7 +40,7 @@ from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.description.steps.renames import make_renames, respeller
 from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
-from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
+from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, plain_named, root_sections
 from multibot_rewrite.refactor.namespaces import namespaced, space_verified
 from multibot_rewrite.refactor.package import (
     Description,
@@ -217,6 +217,7 @@ def _with_related_files(made: Adopted, found: Sequence[Description], job: _Job) 
     files |= {it.path for it in filled.values() if it.path in launches.after}
     elsewhere = [*named_elsewhere(job.folder, names, set(map(os.path.realpath, files)))]
     elsewhere += root_sections(there.params) if made.namespace else ()
+    elsewhere += plain_named(job.folder, (it for it in made.after if not os.path.exists(it)))
     return made._replace(
         before={**made.before, **{path: read_file(path) for path in launches.after}},
         after={**made.after, **launches.after},

@@ -24,7 +24,7 @@ from multibot_rewrite.related_files.yaml_text import read_yaml
 
 _CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
 _PAGES = (".md", ".rst", ".txt")
-_DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz")
+_DATA = (".yaml", ".yml", ".world", ".sdf", ".srdf", ".rviz", ".setup_assistant")
 _BESIDE = (*_CODE, *_PAGES, *_DATA, ".xml")
 _LAUNCH = re.compile(r"[._]launch\.\w+$|/launch/[^/]*$")
 _SECTION = re.compile(rb"^([A-Za-z]\w*):[^\n]*\n(?:\s*#[^\n]*\n)*\s+ros__parameters:", re.MULTILINE)
@@ -45,6 +45,17 @@ def named_elsewhere(
         with suppress(InputError):
             data = b"" if os.path.realpath(path) in without else read_file(path)
             yield from _lines(path, data, literal if path.endswith(_CODE) else word)
+
+
+def plain_named(folder: str, xacros: Iterable[str]) -> Iterator[Left]:
+    """Yield each line with a plain description that has become one of ``xacros``."""
+    # Such as a launch file that reads an SRDF as it is.
+    some = "|".join({re.escape(os.path.basename(it).removesuffix(".xacro")) for it in xacros})
+    word = re.compile(rf"(?<![\w./-])([\w./-]*\b(?:{some}))(?![\w.-])".encode())
+    for path in files_below(folder, _BESIDE) if some else ():
+        with suppress(InputError):
+            why = ", which has no prefix; expand the .xacro next to it in its place"
+            yield from _lines(path, read_file(path), word, why)
 
 
 def mentions(

@@ -233,12 +233,19 @@ def test_a_plain_srdf_becomes_a_xacro_beside_it(package: Path) -> None:
         '<robot name="r"><group name="g"><joint name="j"/></group>'
         '<disable_collisions link1="base" link2="arm" reason="Adjacent"/></robot>'
     )
+    write_files(
+        package, {"launch/b.launch.py": "a = ('config/r.srdf', 'r.srdf.bak', 'or.srdf')\n"}
+    )
+    write_files(package, {".setup_assistant": "srdf:\n  relative_path: config/r.srdf\n"})
     made = adopt(str(package))
     text = made.after[f"{srdf}.xacro"].decode()
     assert '<group name="g"><joint name="${prefix}j"/>' in text
     assert 'link1="${prefix}base" link2="${prefix}arm"' in text
     assert str(srdf) not in made.after
-    assert made.left == ()
+    why = "names 'config/r.srdf', which has no prefix; expand the .xacro next to it in its place"
+    assert [(it.place.removeprefix(f"{package}/"), it.why) for it in made.left] == [
+        (".setup_assistant:2", f"it {why}"), ("launch/b.launch.py:1", f"the launch file {why}")
+    ]  # fmt: skip
     Path(f"{srdf}.xacro").write_text(text)
     assert b'link1="base"' in expand(f"{srdf}.xacro", {})
 
