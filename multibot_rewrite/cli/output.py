@@ -75,7 +75,7 @@ def with_schema(path: str, data: bytes, schema: str) -> list[tuple[str, bytes]]:
 
 
 def _read_files(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
-    """Yield each option that names files to read, with each of its files."""
+    """Yield (option, path) for each file that an option names to be read."""
     for name in READ:
         value = getattr(options, name, None) or ()
         yield from ((name, it) for it in ([value] if isinstance(value, str) else value))

@@ -98,6 +98,7 @@ def same_meaning(one: _Element, other: _Element) -> bool:
 
 
 def _is_same(one: Meaning, other: Meaning) -> bool:
+    """Return whether two meanings agree, numbers up to rounding."""
     if one._replace(numbers=(), children=()) != other._replace(numbers=(), children=()):
         return False
     if len(one.numbers) != len(other.numbers) or len(one.children) != len(other.children):
@@ -121,7 +122,7 @@ def _meaning(element: _Element) -> Meaning:
 
 
 def _half_spheres(link: _Element) -> Iterator[Meaning]:
-    """Yield the spheres that replace the ends of a link's capsules, after all else."""
+    """Yield two spheres, as elements, for the ends of each of a link's capsules."""
     for shape, holder in capsules(link):
         pose = poses.pose_of(next(holder.iterchildren("origin"), None))
         length = number(shape.get("length"))

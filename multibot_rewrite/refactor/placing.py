@@ -88,7 +88,7 @@ def _places_in(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterat
     real = {file: os.path.realpath(file) for file in read.sources}
     wanted = dicts_by_key(((one.element, one.attribute), one.start, one) for one in changes)
     for number, element in enumerate(it.inventory.document.elements):
-        for attribute, value in values_of(element):
+        for attribute, value in _values(element):
             mine = wanted.get((number, attribute), {})
             if not value and not mine:
                 continue
@@ -113,8 +113,8 @@ def _with_real_path(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
     return spot and (real[spot[0]], spot[1])
 
 
-def values_of(element: etree._Element) -> Iterator[tuple[str, str]]:
-    """Yield the attributes of an element, and its text under the name "" if it has no elements."""
+def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
+    """Yield (attribute, value) of an element, and its text under the name "" if it has no elements."""
     yield from ((str(name), str(value)) for name, value in element.attrib.items())
     if not len(element):
         yield "", element.text or ""
@@ -141,6 +141,7 @@ def _spot_of_use(
 
 
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
+    """Return start and end of an attribute's value, or of an element's text; None without one."""
     if attribute:
         return written_slot(source, start, attribute)
     begin = tag_end(source, start)
@@ -150,7 +151,7 @@ def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
 def _spot_of_copy(
     read: Expansion, pieces: Sequence[tuple[int, Piece]], at: int
 ) -> tuple[Spot | None, frozenset[Spot]]:
-    """Return where the piece at ``at`` is copied from, if in no expression; and the other pieces."""
+    """Return the spot that the piece at ``at`` is copied from, None if in an expression; the others."""
     spots = {(it.file, it.start): last for last, it in pieces if it.kind not in (EXPRESSION, GIVEN)}
     for last, it in pieces:
         spot = it.file, it.start

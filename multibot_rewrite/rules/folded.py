@@ -215,7 +215,7 @@ def _users(seen: Index, it: Finding) -> Sequence[str]:
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
-    """Return whether it is about the time that nodes get."""
+    """Return whether a finding is about the time that nodes get."""
     return any(end.type == "rosgraph_msgs/msg/Clock" for end in _ends(seen, it.names))
 
 

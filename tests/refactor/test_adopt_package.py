@@ -233,9 +233,7 @@ def test_a_plain_srdf_becomes_a_xacro_beside_it(package: Path) -> None:
         '<robot name="r"><group name="g"><joint name="j"/></group>'
         '<disable_collisions link1="base" link2="arm" reason="Adjacent"/></robot>'
     )
-    write_files(
-        package, {"launch/b.launch.py": "a = ('config/r.srdf', 'r.srdf.bak', 'or.srdf')\n"}
-    )
+    write_files(package, {"launch/b.launch.py": "a = ('config/r.srdf', 'r.srdf.bak', 'or.srdf')\n"})
     write_files(package, {".setup_assistant": "srdf:\n  relative_path: config/r.srdf\n"})
     made = adopt(str(package))
     text = made.after[f"{srdf}.xacro"].decode()

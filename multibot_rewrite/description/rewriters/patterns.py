@@ -135,6 +135,7 @@ def _parse_sequence(pieces: deque[str], depth: int) -> _Piece:
         row.append(piece)
 
     def add(states: list[_State], after: int) -> int:
+        """Add the states of all pieces; return the first."""
         for piece in reversed(row):
             after = piece(states, after)
         return after
@@ -143,6 +144,7 @@ def _parse_sequence(pieces: deque[str], depth: int) -> _Piece:
 
 
 def _parse_atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
+    """Return a function that adds the states for a character, class, anchor or group."""
     if piece in ("(", "(?:"):
         inner = _parse_alternatives(pieces, depth + 1)
         if not pieces:
@@ -160,6 +162,7 @@ def _parse_atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
 
 
 def _add_state(states: list[_State], over: frozenset[str] | str | None, *behind: int) -> int:
+    """Add a state that leads over a character to those ``behind``; return its number."""
     if len(states) > _STATES:
         raise PatternError("too much is repeated")
     states.append((over, behind))
@@ -185,6 +188,7 @@ def _repeated(piece: _Piece, least: int, most: int | None) -> _Piece:
         raise PatternError(f"{{{least},{most}}} is no count")
 
     def add(states: list[_State], after: int) -> int:
+        """Add the states of all repetitions; return the first."""
         start = after
         if most is None:
             start = _add_state(states, None)

@@ -75,7 +75,7 @@ def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
 
 
 def _bridge_rows(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
-    """Return bridge rows in arguments as texts by launch file and line, and bridges' own files."""
+    """Return bridge rows in arguments as texts, by launch file and line; and bridges' own files."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     found: dict[str, str] = {}
     nodes = launch_of(spec.launch, spec.words[0]).nodes
@@ -156,7 +156,7 @@ def with_one_map(file: FleetFile) -> FleetFile:
 
 
 def _maps(spec: RobotSpec) -> Iterator[tuple[str, tuple[object, str]]]:
-    """Yield the map servers outside the robot's namespace: name, map, and the topic from the root."""
+    """Yield (name, (map, topic from the root)) of map servers outside the robot's namespace."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     for it in launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ():
         if it.package == _MAPS and once_for_all(it) and not is_of_robot(it.namespace, words):
@@ -178,6 +178,7 @@ def with_bridge_namespaces(file: FleetFile) -> FleetFile:
 
 
 def _with_namespaces(spec: RobotSpec, robots: Collection[str]) -> RobotSpec:
+    """Return the robot with the namespaces that launch files give to its bridges."""
     files = spec.related_files.get("bridge", ())
     if spec.bridge_namespace or not (files and spec.launch):
         return spec

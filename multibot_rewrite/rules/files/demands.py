@@ -96,7 +96,9 @@ def contradictions(file: NamedFile) -> Iterator[Finding]:
             meant = "" if word in nodes else slip_of(word, sorted(left))
             if meant:
                 message = f"{it.section.title}: {it.given.name} has {word!r}, and lacks {meant!r}"
-                yield remark_at(it.given.node, message, f"it waits for that node; see {it.source}")
+                yield remark_at(
+                    it.given.node, message, f"list such a node: it waits; see {it.source}"
+                )
 
 
 def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:

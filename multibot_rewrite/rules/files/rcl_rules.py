@@ -85,6 +85,7 @@ def _keys_outside(key: yaml.ScalarNode, node: yaml.Node) -> Iterator[yaml.Scalar
 
 
 def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
+    """Yield the lists below a node, at any depth."""
     for _, value in pairs(node):
         if isinstance(value, yaml.SequenceNode):
             yield value
@@ -93,7 +94,7 @@ def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
 
 
 def _is_read(node: yaml.Node) -> bool:
-    """Return whether it is a list of values; rcl 9.2 takes ``- key: [a]``, and no maps of two keys."""
+    """Return whether rcl reads a list; 9.2 takes ``- key: [a]``, and no maps of two keys."""
     maps = [it for it in node.value if isinstance(it, yaml.MappingNode)]
     return not maps or any(len(it.value) > 1 for it in maps)
 

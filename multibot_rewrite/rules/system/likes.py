@@ -30,6 +30,8 @@ from multibot_rewrite.system.words import is_viewer, last_word
 # Fewer nodes in common say nothing.
 _ENOUGH = 3
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
+# It loads controllers into its process.
+_LOADER = "/controller_manager"
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
 # Node, kind, role and name, without the robot's.
@@ -288,7 +290,8 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
         if node := done_elsewhere(seen, ends):
-            lost[seen.robot(ends.name), node].append(ends)
+            robot = seen.robot(ends.name)
+            lost[robot, _loader(seen, node, robot)].append(ends)
     yield from _never_sent(seen)
     for (robot, node), missed in lost.items():
         names, plain = tuple(it.name for it in missed), seen.plain(node)
@@ -308,6 +311,14 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
             message, hint, level=ERROR if seen.is_live else WARNING,
             robot=robot, node=there, names=names,
         )  # fmt: skip
+
+
+def _loader(seen: Index, node: str, robot: str) -> str:
+    """Return the controller_manager in a node's process where the robot has none, else the node."""
+    each = nodes_of_each(seen)
+    loader = each[seen.robot(node)].get(_LOADER, node)
+    together = seen.node[node].process == seen.node[loader].process != ""
+    return loader if together and _LOADER not in each[robot] else node
 
 
 def _never_sent(seen: Index) -> Iterator[Finding]:
