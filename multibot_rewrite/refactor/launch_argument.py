@@ -129,11 +129,9 @@ class _Text(NamedTuple):
     lines: list[int]
 
     def begin(self, node: _Placed) -> int:
-        """Return the offset where a node of the syntax tree begins."""
         return self.lines[node.lineno - 1] + node.col_offset
 
     def end(self, node: _Placed) -> int:
-        """Return the offset behind a node of the syntax tree."""
         line, column = node.end_lineno, node.end_col_offset
         assert line and column
         return self.lines[line - 1] + column

@@ -170,7 +170,7 @@ def _namespace_edits(template: Template) -> Iterator[ValueEdit]:
 
 
 def _conditional_namespace(change: ValueEdit, argument: str) -> str:
-    """Return an expression that is empty without a namespace."""
+    """Return ``${...}`` with the new name of a change, which is empty without a namespace."""
     before, after = change.new.split(TRIED_SPACE)
     words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)
     test = f"{argument} and " if len(words) > 1 else ""

@@ -88,7 +88,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
 
 
 def _facet_values(seen: Index, it: Finding, common: str, side: int) -> Set[tuple[str, ...]]:
-    """Return what a cause (side 0) or what comes of it (-1) has of ``robot and server = node``."""
+    """Return the values that a cause (side 0), or what comes of it (-1), has in ``common``."""
     facets = (one.split(" = ")[side] for one in common.split(" and "))
     return {*product(*(_FACETS[facet](seen, it) for facet in facets))}
 

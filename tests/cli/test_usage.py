@@ -402,9 +402,9 @@ def test_files_that_options_name_to_be_read() -> None:
          "g.json is not there; multibot snapshot -o FILE writes one"),
         ({"plan": "out/p.yaml"}, "out/p.yaml is not there; multibot build and multibot plan write one"),
         ({"input": "other.yaml"}, "other.yaml is not there; multibot init PATH... writes a fleet file"),
-        ({"input": "p.yaml", "command": "urdf-postfix"}, "p.yaml is not there"),
+        ({"input": "p.yaml", "command": "urdf-postfix"}, "p.yaml is not there; correct the path"),
         ({"fleet": "our.yml"}, "our.yml is not there; multibot init PATH... writes a fleet file"),
-        ({"urdf": "none.xacro"}, "none.xacro is not there"),
+        ({"urdf": "none.xacro"}, "none.xacro is not there; correct the path"),
     ],
 )  # fmt: skip
 def test_a_file_that_is_not_there_is_told_with_what_helps(

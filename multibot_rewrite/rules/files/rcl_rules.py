@@ -85,7 +85,6 @@ def _keys_outside(key: yaml.ScalarNode, node: yaml.Node) -> Iterator[yaml.Scalar
 
 
 def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
-    """Yield the lists below a node, at any depth."""
     for _, value in pairs(node):
         if isinstance(value, yaml.SequenceNode):
             yield value

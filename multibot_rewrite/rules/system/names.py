@@ -109,7 +109,6 @@ def _surely_runs(end: End) -> bool:
 
 
 def _each_node(ends: Iterable[End]) -> Iterator[End]:
-    """Yield the last end of each node."""
     return iter({end.node: end for end in ends}.values())
 
 
@@ -123,7 +122,6 @@ def _published_instead(
     fitting = (it for it in above if published[it].type == end.type)
 
     def mine(it: str) -> bool:
-        """Return whether a node of the robot publishes a topic."""
         return not own.isdisjoint(map(seen.robot, nodes_of(published[it].publishers)))
 
     if captured := next(filter(mine, fitting), ""):
