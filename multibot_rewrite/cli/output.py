@@ -238,9 +238,10 @@ def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False)
     lines = [b"--- %b\n" % _escaped_path(name), b"+++ %b\n" % _escaped_path(new_name)]
     matcher = SequenceMatcher(None, before, after, len(after) > _COMPARED_EXACTLY)
     for group in matcher.get_grouped_opcodes():
-        _, first, _, new_first, _ = group[0]
-        _, _, last, _, new_last = group[-1]
-        lines.append(b"@@ -%b +%b @@\n" % (_extent(first, last), _extent(new_first, new_last)))
+        (_, first, _, new_first, _), (_, _, last, _, new_last) = group[0], group[-1]
+        old_lines = first + (last > first), last - first
+        new_lines = new_first + (new_last > new_first), new_last - new_first
+        lines.append(b"@@ -%d,%d +%d,%d @@\n" % (*old_lines, *new_lines))
         for tag, start, end, new_start, new_end in group:
             mark = b" " if tag == "equal" else b"-"
             lines += (mark + line for line in before[start:end])
@@ -248,12 +249,6 @@ def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False)
     cut_short = b"\n\\ No newline at end of file\n"
     whole = (line if line.endswith(b"\n") else line + cut_short for line in lines)
     return b"".join(map(_painted_line, whole) if colour else whole)
-
-
-def _extent(start: int, end: int) -> bytes:
-    """Return lines ``start`` to ``end`` as the head of a hunk names them."""
-    size = end - start
-    return b"%d" % end if size == 1 else b"%d,%d" % (start + bool(size), size)
 
 
 def _escaped_path(path: str) -> bytes:

@@ -366,7 +366,7 @@ def test_a_diff_is_one_that_patch_reads() -> None:
     )
     coloured = output.diff(b"a\n", b"b\n", "x", "y", colour=True)
     assert coloured == (
-        b"\033[31m--- x\033[0m\n\033[32m+++ y\033[0m\n\033[36m@@ -1 +1 @@\033[0m\n"
+        b"\033[31m--- x\033[0m\n\033[32m+++ y\033[0m\n\033[36m@@ -1,1 +1,1 @@\033[0m\n"
         b"\033[31m-a\033[0m\n\033[32m+b\033[0m\n"
     )
     # Nothing but changed lines is between lines that are often there.
