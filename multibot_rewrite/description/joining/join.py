@@ -181,12 +181,8 @@ def _with_references(part: ReadPart, spec: Part, output: Output, tree: Tree) -> 
             new = output.controllers
         elif not is_files and path and "://" not in path and folder != os.curdir:
             new = os.path.join(folder, path)
-        (start, end), name = spans.of(element), "" if is_files else "filename"
-        slot = value_slot(document.source, start, name, path)
-        if new and new != path and slot:
-            words = new.translate(ESCAPES).encode()
-            text = document.source[start : slot[0]] + words + document.source[slot[1] : end]
-            edits.append(kept.was(start, end, document.source[start:end], text))
+        if new and new != path:
+            edits += kept.path_edits(spans, element, new.translate(ESCAPES).encode())
     text = _edited_text(document.source, edits)
     return part._replace(text=text, inventory=collect(read_document(text, part.file), tree))
 

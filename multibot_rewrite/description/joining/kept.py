@@ -7,7 +7,8 @@ A part is in front of ``</robot>`` of the first one, between two comments:
     <!-- multibot end gripper TAIL -->
 
 ``HEAD`` is what its file has up to the end of its root's start tag, ``TAIL`` what it has from the end
-tag on. What was left out or changed is kept where it was, before the 0 or 1 elements in its place:
+tag on. What was left out or changed is kept where it was, before the 0 or 1 elements in its place; of
+an element that refers to another file than before, that name (2):
 
     <!-- multibot was 1 OLD -->
 
@@ -15,7 +16,7 @@ A comment holds no ``--``, and no colon before a blank: launch files pass a desc
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 from urllib.parse import quote, unquote
 
@@ -24,7 +25,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.steps.apply import Spans, cut
-from multibot_rewrite.description.steps.document import read_document, silenced
+from multibot_rewrite.description.steps.document import read_document, silenced, value_slot
 
 _BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
 # No comment holds two dashes.
@@ -34,7 +35,7 @@ _PART = lazy_compile(
 )
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
-_WAS = lazy_compile(rb"<!-- multibot was ([01]) (" + _INSIDE + rb") -->")
+_WAS = lazy_compile(rb"<!-- multibot was ([012]) (" + _INSIDE + rb") -->")
 _OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was) ")
 _MARKS = lazy_compile(
     rb"  <!-- multibot (?:base %b-->\n|part %b-->)|<!-- multibot (?:was %b-->|end %b-->\n)"
@@ -71,6 +72,24 @@ def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
     """Return the edit that puts ``new`` between two offsets, and keeps ``old`` in a comment."""
     kept = b"<!-- multibot was %d %s -->" % (bool(new), _escaped(old))
     return Edit(start, end, kept + new, None)
+
+
+def path_edits(spans: Spans, element: _Element, new: bytes) -> Iterator[Edit]:
+    """Yield the edit that gives an element another path and keeps the old one, if one can."""
+    (start, end), slot = spans.of(element), path_slot(spans, element)
+    if slot:
+        source = spans.document.source
+        kept = b"<!-- multibot was 2 %s -->" % _escaped(source[slice(*slot)])
+        yield Edit(start, end, kept + source[start : slot[0]] + new + source[slot[1] : end], None)
+
+
+def path_slot(spans: Spans, element: _Element | None) -> tuple[int, int] | None:
+    """Return where the path is that an element refers to: in ``filename``, or its text."""
+    if element is None:
+        return None
+    name = "filename" if "filename" in element.attrib else ""
+    path = (element.get(name) if name else element.text) or ""
+    return value_slot(spans.document.source, spans.start_of(element), name, path.strip())
 
 
 def left_out(spans: Spans, element: _Element) -> Edit:
@@ -136,8 +155,11 @@ def _as_it_was(text: bytes, file: str) -> bytes:
             # What was changed in what was changed later comes back with that.
             if it.start() < last:
                 continue
-            last = _end_of_replacement(spans, it, file)
-            edits.append(Edit(it.start(), last, _unescaped(it[2]), None))
+            last, old = _end_of_replacement(spans, it, file), _unescaped(it[2])
+            if it[1] == b"2":
+                slot = path_slot(spans, spans.first_from(it.end())) or (last, last)
+                old = text[it.end() : slot[0]] + old + text[slot[1] : last]
+            edits.append(Edit(it.start(), last, old, None))
         text = b"".join(cut(text, edits))
     return text
 
