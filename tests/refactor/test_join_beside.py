@@ -319,6 +319,9 @@ def test_what_refers_to_files_refers_to_the_new_ones(tmp_path: Path) -> None:
     assert split(made.data) == {
         Path(str(it.description)).stem: Path(str(it.description)).read_bytes() for it in given
     }
+    # What else was edited by hand stays as it is.
+    larger = made.data.replace(b'"../hand/m/a&amp;b.stl"', b'"../hand/m/a&amp;b.stl" scale="2 2 2"')
+    assert b'<mesh filename="m/a&amp;b.stl" scale="2 2 2"/>' in split(larger)["hand"]
     gone = made.data.replace(b'<mesh filename="../hand/m/a&amp;b.stl"/>', b"")
     with pytest.raises(InputError, match="followed a comment 'multibot was' was edited by hand"):
         split(gone)
