@@ -41,5 +41,5 @@ def _print_result(options: argparse.Namespace, made: Renaming) -> None:
         lines = f"{plural(len(left), 'line')} with {options.old!r}"
         shown = shorten((it.place for it in left), SEVERAL)
         note(options, f"left as they are: {lines}: {shown}")
-        for one in left:
-            detail(options, f"  {one.place}: {one.why}")
+        for mention in left:
+            detail(options, f"  {mention.place}: {mention.why}")

@@ -137,9 +137,9 @@ def _adopted(job: _Job) -> Adopted:
     already = {path: name for path, its in arguments.items() if (name := _prefix_argument(its))}
     # An SRDF follows its URDF.
     whole = {already[it.path] for it in descriptions if it.path in already.keys() - partial.keys()}
-    for it in filter(_is_srdf, descriptions):
-        if partial.get(it.path) in whole:
-            del partial[it.path]
+    for srdf in filter(_is_srdf, descriptions):
+        if partial.get(srdf.path) in whole:
+            del partial[srdf.path]
     names = already | partial
     lacks = {
         it.path: _names_without(it, names[it.path], job) for it in descriptions if it.path in names
@@ -176,13 +176,13 @@ def _with_more(made: Adopted, found: Sequence[Description], argument: str, job: 
         if not argument and not made.argument:
             raise
         left = Left(found[0].path, f"its names are not verified: {error}")
-        bare = {it.path: _values(_prefix_edits(it)) for it in found} | dict(made.bare)
+        bare = {it.path: _changed_names(_prefix_edits(it)) for it in found} | dict(made.bare)
         return made._replace(left=(*made.left, left), bare=bare)
     return Adopted(*(_combined(*pair) for pair in zip(made, more, strict=True)))
 
 
 def _combined(one: Any, two: Any) -> Any:
-    """Return one value of two of the same field."""
+    """Return what two mappings or tuples have; of two words the second, unless it is empty."""
     if isinstance(one, Mapping):
         return {**one, **two}
     return tuple(dict.fromkeys((*one, *two))) if isinstance(one, tuple) else two or one
@@ -309,10 +309,11 @@ def _with_calls(attempt: _Attempt, sources: Sources, job: _Job) -> _Attempt:
     marked = edited(texts, [it.edit(mark) for mark, it in marks.items()])
     seen: set[str] = set()
     astray: set[str] = set()
-    for it, asked in zip(attempt.found, attempt.asked, strict=True):
-        other = _expanded_again(it, {**texts, **marked}, {argument: TRIED}, job).inventory.document
-        seen |= {one.decode() for one in MARK.findall(other.source)}
-        astray |= compared(it.inventory.document, asked, other, MARK).astray
+    for found, asked in zip(attempt.found, attempt.asked, strict=True):
+        other = _expanded_again(found, {**texts, **marked}, {argument: TRIED}, job)
+        document = other.inventory.document
+        seen |= {mark.decode() for mark in MARK.findall(document.source)}
+        astray |= compared(found.inventory.document, asked, document, MARK).astray
     chosen = [it for mark, it in marks.items() if mark in seen - astray]
     if "" in astray or not chosen:
         raise InputError(f"{job.folder}: no call takes the argument alone")
@@ -358,7 +359,7 @@ def _with_argument(
     wrong = {it[0].words: _prefix_fault(*it, after, argument, job.how) for it in every}
     wrong = {name: why for name, why in wrong.items() if why}
     bare = {
-        it.words: _values(one for one in its if one not in own)
+        it.words: _changed_names(one for one in its if one not in own)
         for (it, _, own), its in zip(every, asked, strict=True)
         if len(its) > len(own)
     }
@@ -436,10 +437,10 @@ def _prefix_argument(arguments: Iterable[Argument]) -> str:
     # Of two arms both are returned. ``world`` and some that were forgotten may lack it.
     uses = [(it, use) for it in arguments for use in it.uses if not it.fault]
     uses = [(it, use) for it, use in uses if (use.kind, use.how) == ("link", PREFIX)]
-    for it, use in uses:
+    for argument, use in uses:
         lacking = use.total - use.names
-        if (it.value and lacking <= use.names) or (not it.missed and lacking < _FEW):
-            return it.name
+        if (argument.value and lacking <= use.names) or (not argument.missed and lacking < _FEW):
+            return argument.name
     reached = sum(use.names for it, use in uses if not it.missed)
     is_whole = bool(uses) and reached + _FEW > uses[0][1].total
     return ", ".join(dict.fromkeys(it.name for it, _ in uses)) if is_whole else ""
@@ -447,22 +448,23 @@ def _prefix_argument(arguments: Iterable[Argument]) -> str:
 
 def _incomplete_argument(arguments: Iterable[Argument]) -> str:
     """Return the argument that is empty by default and before some names or none; else empty."""
-    every = [it for it in arguments if not it.default and not it.fault]
-    for it in every:
-        parts = [use for use in it.uses if use.kind in _PARTS]
+    empty = [it for it in arguments if not it.default and not it.fault]
+    for argument in empty:
+        parts = [use for use in argument.uses if use.kind in _PARTS]
         if parts and all((use.how, use.separator) == (PREFIX, "") for use in parts):
-            return it.name
-    unused = (it.name for it in every if not it.uses and not it.others)
+            return argument.name
+    unused = (it.name for it in empty if not it.uses and not it.others)
     return next((name for name in unused if "prefix" in name), "")
 
 
 def _names_without(it: Description, name: str, job: _Job) -> tuple[str, ...]:
     """Return the names that an argument of a description does not reach."""
     other = _expanded_again(it, {}, dict.fromkeys(name.split(", "), TRIED), job)
-    return _values(_compared_descriptions(it, other).lacks)
+    return _changed_names(_compared_descriptions(it, other).lacks)
 
 
-def _values(edits: Iterable[ValueEdit]) -> tuple[str, ...]:
+def _changed_names(edits: Iterable[ValueEdit]) -> tuple[str, ...]:
+    """Return the values that edits change, each once."""
     return tuple(dict.fromkeys(it.value.strip() for it in edits))
 
 

@@ -81,11 +81,12 @@ def _lines(
     who = next((it for ends, it in kinds.items() if path.endswith(ends)), "it")
     who = "the launch file" if _LAUNCH.search(path) else who
     found: dict[int, tuple[str, str]] = {}
-    for it in pattern.finditer(data):
-        if it[1] is not None:
-            put = it.start(1) and data[it.start(1) - 1 : it.start(1)] in b"/}_"
-            verb = "puts together" if put and path.endswith(_CODE) else "names"
-            found.setdefault(locate(data, it.start(1))[0], (verb, it[1].decode()))
+    for match in pattern.finditer(data):
+        if match[1] is not None:
+            at = match.start(1)
+            is_put_together = at and data[at - 1 : at] in b"/}_" and path.endswith(_CODE)
+            verb = "puts together" if is_put_together else "names"
+            found.setdefault(locate(data, at)[0], (verb, match[1].decode()))
     most = _MOST if why else len(found)
     for line, (verb, name) in list(found.items())[:most]:
         yield Left(f"{path}:{line}", f"{who} {verb} {name!r}{why}")

@@ -229,7 +229,7 @@ def _changed_related_files(
 
 
 def _is_named(node: str, key: str, symbol: _Symbol, urdf: bytes) -> bool:
-    """Return if a parameter file with the node and the key would have the symbol there."""
+    """Return whether a parameter file with the node and the key would have the symbol there."""
     text = json.dumps({node: {"ros__parameters": {key: symbol.old}}}).encode()
     with suppress(MultibotError):
         file = names_in_file(text, "launch.yaml", urdf)

@@ -53,7 +53,7 @@ class Place(NamedTuple):
 
     @property
     def may_be_prefix(self) -> bool:
-        """Return if it is for names of robots, and its value is known or outside of macros."""
+        """Whether it is for names of robots, and its value is known or outside of macros."""
         is_known = "$" not in self.value and "^" not in self.value
         return names_robots(self.name.lower()) and (is_known or not _macro_of(self.element))
 
@@ -62,7 +62,7 @@ class Place(NamedTuple):
         return SourceEdit(*self.spot, self.spot[1], f"{self.before}{word}{self.after}".encode())
 
     def is_argument(self, argument: str, carriers: Collection[tuple[str, str]]) -> bool:
-        """Return if the value is the argument, itself or by the name of something that carries it."""
+        """Return whether the value is the argument, itself or by the name of a carrier of it."""
         if (found := _NAMED.fullmatch(self.value)) is None:
             return False
         names = {(macro, found[2]) for macro in ("", _macro_of(self.element))}
@@ -173,12 +173,13 @@ def compared(
     first = dict(reversed(places))
     begins = [it[0] if it else -1 for it in spans(base, wanted)]
     lacks: list[ValueEdit] = []
-    for it, begin in zip(wanted, begins, strict=True):
+    for edit, begin in zip(wanted, begins, strict=True):
         if begin not in first:
-            element, value = other.elements[it.element], begin - len(it.value[: it.start].encode())
-            at = it.start + sum(len(one) for place, one in places if value <= place < begin)
-            text = element.get(it.attribute) if it.attribute else element.text
-            lacks.append(it._replace(value=text or "", start=at, end=at))
+            element, start = other.elements[edit.element], len(edit.value[: edit.start].encode())
+            inside = (mark for place, mark in places if begin - start <= place < begin)
+            at = edit.start + sum(map(len, inside))
+            text = element.get(edit.attribute) if edit.attribute else element.text
+            lacks.append(edit._replace(value=text or "", start=at, end=at))
     wrong = first.keys() - {*begins}
     astray = (it for at, it in places if at in wrong or it != first[at])
     return Compared(tuple(lacks), frozenset(astray))

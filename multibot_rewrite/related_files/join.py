@@ -166,8 +166,8 @@ def split(source: Source, *, definitions: Iterable[str] = (), distro: str = "") 
 
 def _relative_files(parts: Iterable[Mounted]) -> Iterator[str]:
     """Yield notes on meshes and pictures that are looked up from the folder of a part's file."""
-    for it in parts:
-        root, file = it.part.inventory.document.root, it.part.file
+    for mounted in parts:
+        root, file = mounted.part.inventory.document.root, mounted.part.file
         names = (one.get("filename", "") for one in root.iter("mesh", "texture"))
         found = [name for name in names if name and "://" not in name and name[0] != "/"]
         if found:

@@ -144,19 +144,20 @@ def one_system(joined: Inventory, part: Inventory) -> Once:
 
 def same_ids(joined: Inventory, part: Inventory) -> Iterator[str]:
     """Yield what two parts drive under one id of one hardware, such as motors on a bus."""
-    for it in part.document.root.iterchildren(_SYSTEM):
-        known = dict(chain.from_iterable(map(_ids, like(it, joined.document.root))))
-        for key, name in _ids(it):
+    for system in part.document.root.iterchildren(_SYSTEM):
+        known = dict(chain.from_iterable(map(_ids, like(system, joined.document.root))))
+        for key, name in _ids(system):
             if other := known.get(key):
-                where = f"{part.document.file}:{it.sourceline}"
+                where = f"{part.document.file}:{system.sourceline}"
                 yield f"{where}: {name!r} and {other!r} have one {'='.join(key)} on one hardware"
 
 
 def _ids(system: _Element) -> Iterator[tuple[tuple[str, str], str]]:
-    for one in driven(system):
-        for it in one.iterchildren("param"):
-            if _ID.search(it.get("name", "")):
-                yield (it.get("name", ""), text_of(it)), one.get("name", "")
+    """Yield ((parameter, id), name) of each joint, gpio and sensor with an id."""
+    for component in driven(system):
+        for param in component.iterchildren("param"):
+            if _ID.search(param.get("name", "")):
+                yield (param.get("name", ""), text_of(param)), component.get("name", "")
 
 
 def like(system: _Element, root: _Element) -> Iterator[_Element]:

@@ -151,15 +151,15 @@ def _as_it_was(text: bytes, file: str) -> bytes:
     while _WAS.search(text):
         spans, last = Spans(read_document(text, file)), 0
         edits: list[Edit] = []
-        for it in _WAS.finditer(text):
+        for mark in _WAS.finditer(text):
             # What was changed in what was changed later comes back with that.
-            if it.start() < last:
+            if mark.start() < last:
                 continue
-            last, old = _end_of_replacement(spans, it, file), _unescaped(it[2])
-            if it[1] == b"2":
-                slot = path_slot(spans, spans.first_from(it.end())) or (last, last)
-                old = text[it.end() : slot[0]] + old + text[slot[1] : last]
-            edits.append(Edit(it.start(), last, old, None))
+            last, old = _end_of_replacement(spans, mark, file), _unescaped(mark[2])
+            if mark[1] == b"2":
+                slot = path_slot(spans, spans.first_from(mark.end())) or (last, last)
+                old = text[mark.end() : slot[0]] + old + text[slot[1] : last]
+            edits.append(Edit(mark.start(), last, old, None))
         text = b"".join(cut(text, edits))
     return text
 
