@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: Apache-2.0
+"""``urdf-lint --lsp``: a language server. It says where things are in a text, ``answers`` says what.
+
+Each answer is made by a process of its own, forked from one that has all loaded: no answer makes the
+server wait, an outdated one is stopped, and none remembers files as they were."""
+
+from __future__ import annotations
+
+import argparse
+import asyncio
+import gc
+import os
+import re
+from collections.abc import Callable, Mapping, Sequence
+from difflib import SequenceMatcher
+from multiprocessing import get_context
+from typing import Any
+
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.model import MultibotError, Unusable
+from multibot_rewrite.cli import answers
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.refactor.rename import Place
+from multibot_rewrite.version import __version__
+
+try:
+    from lsprotocol import types as lsp
+    from pygls.lsp.server import LanguageServer
+    from pygls.uris import from_fs_path
+    from pygls.workspace import TextDocument
+except ImportError as error:
+    raise Unusable(f"{error}: editors need it: pip install 'multibot_rewrite[lsp]'") from None
+
+# Seconds: without a change before a file is linted, and after which an answer is given up.
+PAUSE, LONGEST = 0.03, 60.0
+_FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
+_SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
+# A tag with its bracket, an attribute with its value, or a word.
+_MARKED = re.compile(r"</?[\w:.-]+|[\w:.-]+\s*=\s*(?:\"[^\"]*\"?|'[^']*'?)|[^\s<>]+")
+# The ends of a word around the cursor.
+_BEFORE, _AFTER = (re.compile(it) for it in (r"[^\s\"'<>=,(){}\[\]]*$", r"^[^\s\"'<>=,(){}\[\]]*"))
+
+
+class Server(LanguageServer):
+    """The open files of an editor, and the findings in them."""
+
+    def __init__(self) -> None:
+        super().__init__("urdf-lint", __version__)
+        self.options = argparse.Namespace()
+        self.context = get_context("forkserver")
+        self.context.set_forkserver_preload(["multibot_rewrite.cli.warm"])
+        self.found: dict[str, Sequence[Finding]] = {}
+        self.running: dict[str, asyncio.Task[None]] = {}
+        self.waiting: list[tuple[Any, Any]] = []
+
+    async def ask(self, function: Callable[..., Any], uri: str, *words: Any) -> Any:
+        """Return the answer of a function of ``answers``; None for none, an error is shown."""
+        documents = self.workspace.text_documents.values()
+        texts = {os.path.realpath(it.path): it.source.encode() for it in documents}
+        path = self.workspace.get_text_document(uri).path
+        self.have_one_waiting()
+        child, connection = self.waiting.pop()
+        try:
+            connection.send((texts, function, self.options, path, *words))
+            answer = await asyncio.wait_for(asyncio.to_thread(connection.recv), LONGEST)
+        except (EOFError, OSError, asyncio.TimeoutError):
+            return None
+        finally:
+            child.kill()
+            self.have_one_waiting()
+        if not isinstance(answer, MultibotError):
+            return answer
+        self.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Warning, str(answer)))
+        return None
+
+    def have_one_waiting(self) -> None:
+        """Start a process that waits for a question, unless one does."""
+        if not self.waiting:
+            ours, theirs = self.context.Pipe()
+            child = self.context.Process(target=answers.answer, args=(theirs,), daemon=True)
+            child.start()
+            theirs.close()
+            self.waiting.append((child, ours))
+
+    def diagnose(self, uri: str) -> None:
+        """Lint a file, once nobody has typed for a moment."""
+        if uri in self.running:
+            self.running[uri].cancel()
+        self.running[uri] = asyncio.create_task(self._diagnose(uri))
+
+    async def _diagnose(self, uri: str) -> None:
+        await asyncio.sleep(PAUSE)
+        is_open = uri in self.workspace.text_documents
+        found = await self.ask(answers.diagnose, uri) if is_open else ()
+        if found is None:
+            return
+        # An included file has the findings of all open files that include it.
+        old, self.found[uri] = self.found.get(uri, ()), found
+        every = [(self.uri_of(it.file), it) for its in self.found.values() for it in its]
+        for each in {uri, *(self.uri_of(it.file) for it in (*old, *found))}:
+            document = self.workspace.get_text_document(each)
+            own = dict.fromkeys(it for file, it in every if file == each)
+            shown = [_diagnostic(document, it) for it in own]
+            params = lsp.PublishDiagnosticsParams(each, shown, document.version)
+            self.text_document_publish_diagnostics(params)
+
+    def uri_of(self, path: str) -> str:
+        """Return what the editor calls a file."""
+        real, documents = os.path.realpath(path), self.workspace.text_documents.values()
+        known = (it.uri for it in documents if os.path.realpath(it.path) == real)
+        return next(known, None) or from_fs_path(os.path.abspath(path)) or path
+
+    def edits_to(self, files: Mapping[str, bytes]) -> lsp.WorkspaceEdit:
+        """Return the edits of whole lines that give files these texts."""
+        changes: dict[str, list[lsp.TextEdit]] = {}
+        for path, text in files.items():
+            uri, new = self.uri_of(path), text.decode().splitlines(keepends=True)
+            old = self.workspace.get_text_document(uri).lines
+            parts = SequenceMatcher(None, old, new, False).get_opcodes()
+            changes[uri] = [
+                lsp.TextEdit(
+                    lsp.Range(lsp.Position(start, 0), lsp.Position(end, 0)),
+                    "".join(new[first:last]),
+                )
+                for tag, start, end, first, last in parts
+                if tag != "equal"
+            ]
+        return lsp.WorkspaceEdit(changes)
+
+    def location(self, it: Place) -> lsp.Location:
+        """Return a place as the editor counts."""
+        document = self.workspace.get_text_document(self.uri_of(it.file))
+        return lsp.Location(document.uri, _range(document, *it.start, *it.end))
+
+
+def _range(document: TextDocument, line: int, column: int, end: int, last: int) -> lsp.Range:
+    """Return a range as the editor counts: from 0, in its units."""
+    start, stop = lsp.Position(line - 1, column - 1), lsp.Position(end - 1, last - 1)
+    units = document.position_codec.position_to_client_units
+    return lsp.Range(units(document.lines, start), units(document.lines, stop))
+
+
+def _diagnostic(document: TextDocument, it: Finding) -> lsp.Diagnostic:
+    line, column = max(it.line, 1), max(it.column, 1)
+    marked = _MARKED.match(next(iter(document.lines[line - 1 :]), ""), column - 1)
+    where = _range(document, line, column, line, (marked.end() if marked else column) + 1)
+    message = ": ".join(filter(None, (it.robot, it.node, it.message)))
+    text = "; ".join(filter(None, (message, it.hint)))
+    severity = _SEVERITIES.get(it.level, lsp.DiagnosticSeverity.Information)
+    return lsp.Diagnostic(where, text, severity, it.code, source="urdf-lint")
+
+
+server = Server()
+
+
+def run(options: argparse.Namespace) -> int:
+    """Serve an editor until it says exit; returns the exit code."""
+    gc.enable()
+    server.options = options
+    server.start_io()
+    return DONE
+
+
+@server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
+@server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)
+@server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
+@server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
+def _changed(params: Any) -> None:
+    is_saved = isinstance(params, lsp.DidSaveTextDocumentParams)  # others may include it
+    for uri in server.workspace.text_documents if is_saved else [params.text_document.uri]:
+        server.diagnose(uri)
+
+
+@server.feature(lsp.TEXT_DOCUMENT_HOVER)
+async def _hover(params: lsp.HoverParams) -> lsp.Hover | None:
+    document = server.workspace.get_text_document(params.text_document.uri)
+    word = document.word_at_position(params.position, _BEFORE, _AFTER).strip("/:?!-")
+    found, line = server.found.get(document.uri, ()), params.position.line + 1
+    words = [word, *(it.code for it in found if it.line == line)]
+    explained = await server.ask(answers.explain, document.uri, words)
+    content = lsp.MarkupContent(lsp.MarkupKind.Markdown, f"```text\n{explained}\n```")
+    return lsp.Hover(content) if explained else None
+
+
+@server.feature(lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions([_FIX, _FIX_ALL]))
+async def _actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
+    document = server.workspace.get_text_document(params.text_document.uri)
+    lines = range(params.range.start.line + 1, params.range.end.line + 2)
+    fixable = [it for it in server.found.get(document.uri, ()) if it.edits]
+    kinds = [_FIX_ALL] * bool(fixable) + [_FIX] * any(it.line in lines for it in fixable)
+    asked = [it for it in kinds if it.startswith(tuple(params.context.only or [""]))]
+    text = await server.ask(answers.fixed, document.uri) if asked else None
+    if text is None:
+        return []
+    edit = server.edits_to({document.path: text})
+    return [lsp.CodeAction("Fix all that urdf-lint can", it, edit=edit) for it in asked]
+
+
+async def _places(params: Any) -> list[Place]:
+    document = server.workspace.get_text_document(params.text_document.uri)
+    at = document.position_from_client_units(params.position)
+    cursor = at.line + 1, at.character + 1
+    return await server.ask(answers.places, document.uri, cursor) or []
+
+
+@server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
+@server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
+async def _locations(params: Any) -> list[lsp.Location]:
+    context = getattr(params, "context", None)  # that of references
+    wanted = {False, context.include_declaration} if context else {True}
+    return [server.location(it) for it in await _places(params) if it.declares in wanted]
+
+
+@server.feature(lsp.TEXT_DOCUMENT_RENAME)
+async def _rename(params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+    for place in (await _places(params))[:1]:
+        uri, new = params.text_document.uri, params.new_name
+        return server.edits_to(await server.ask(answers.renamed, uri, place, new) or {})
+    return None
