@@ -6,6 +6,7 @@ Files that are open in the editor are read there as they are in it."""
 from __future__ import annotations
 
 import argparse
+import gc
 import os
 from collections.abc import Mapping, Sequence
 from contextlib import redirect_stdout, suppress
@@ -40,6 +41,7 @@ _ENDS = (".urdf", ".xacro", ".srdf", ".sdf")
 
 def answer(connection: Connection) -> None:
     """Send the answer to the one question that comes, or an error that is meant for a person."""
+    gc.disable()
     os.dup2(2, 1)  # the server's output is for the editor alone
     server(os.getpid())  # the first xacro would wait for it
     with suppress(EOFError):  # the editor is gone
