@@ -53,10 +53,13 @@ class Server(LanguageServer):
         self.running: dict[str, asyncio.Task[None]] = {}
         self.waiting: list[tuple[Any, Any]] = []
 
+    def opened(self) -> dict[str, TextDocument]:
+        """Return the open documents by their URIs as the editor writes them."""
+        return {it.uri: it for it in self.workspace.text_documents.values()}
+
     async def ask(self, function: Callable[..., Any], uri: str, *words: Any) -> Any:
         """Return the answer of a function of ``answers``; None for none, an error is shown."""
-        documents = self.workspace.text_documents.values()
-        texts = {os.path.realpath(it.path): it.source.encode() for it in documents}
+        texts = {os.path.realpath(it.path): it.source.encode() for it in self.opened().values()}
         path = self.workspace.get_text_document(uri).path
         self.have_one_waiting()
         child, connection = self.waiting.pop()
@@ -90,8 +93,7 @@ class Server(LanguageServer):
 
     async def _diagnose(self, uri: str) -> None:
         await asyncio.sleep(PAUSE)
-        is_open = uri in self.workspace.text_documents
-        found = await self.ask(answers.diagnose, uri) if is_open else ()
+        found = await self.ask(answers.diagnose, uri) if uri in self.opened() else ()
         if found is None:
             return
         # An included file has the findings of all open files that include it.
@@ -106,8 +108,8 @@ class Server(LanguageServer):
 
     def uri_of(self, path: str) -> str:
         """Return what the editor calls a file."""
-        real, documents = os.path.realpath(path), self.workspace.text_documents.values()
-        known = (it.uri for it in documents if os.path.realpath(it.path) == real)
+        real = os.path.realpath(path)
+        known = (uri for uri, it in self.opened().items() if os.path.realpath(it.path) == real)
         return next(known, None) or from_fs_path(os.path.abspath(path)) or path
 
     def edits_to(self, files: Mapping[str, bytes]) -> lsp.WorkspaceEdit:
@@ -167,7 +169,7 @@ def run(options: argparse.Namespace) -> int:
 @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
 def _changed(params: Any) -> None:
     is_saved = isinstance(params, lsp.DidSaveTextDocumentParams)  # others may include it
-    for uri in server.workspace.text_documents if is_saved else [params.text_document.uri]:
+    for uri in server.opened() if is_saved else [params.text_document.uri]:
         server.diagnose(uri)
 
 

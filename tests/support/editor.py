@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 from lsprotocol import types as lsp
 from pygls.lsp.client import BaseLanguageClient
+from pygls.uris import to_fs_path
 
 # Seconds, on a machine that has much else to do.
 LONGEST = 120
@@ -144,7 +145,7 @@ class Editor:
         """File, line and text of places, in order."""
         made = []
         for it in found or ():
-            path = Path(it.uri.removeprefix("file://"))
+            path = Path(to_fs_path(it.uri) or "")
             start, end = it.range.start, it.range.end
             line = path.read_text().splitlines()[start.line]
             made.append((path.name, start.line + 1, line[start.character : end.character]))
@@ -182,7 +183,7 @@ def applied(edit: lsp.WorkspaceEdit | None, opened: dict[Path, str]) -> dict[str
     """Return the texts that an edit makes, by the names of the files."""
     made = {}
     for uri, edits in ((edit and edit.changes) or {}).items():
-        path = Path(uri.removeprefix("file://"))
+        path = Path(to_fs_path(uri) or "")
         lines = (opened.get(path) or path.read_text()).splitlines(keepends=True)
         for it in sorted(edits, key=lambda it: -it.range.start.line):
             assert it.range.start.character == it.range.end.character == 0
