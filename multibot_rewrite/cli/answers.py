@@ -10,8 +10,10 @@ import gc
 import os
 from collections.abc import Mapping, Sequence
 from contextlib import redirect_stdout, suppress
+from difflib import SequenceMatcher
 from io import BytesIO, TextIOWrapper
 from multiprocessing.connection import Connection
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import OPEN_TEXTS
 from multibot_rewrite.base.config import configured_definitions
@@ -77,10 +79,28 @@ def _settings(options: argparse.Namespace, path: str) -> Settings | None:
     return None if is_excluded(path, config) else set_among([path], settings)
 
 
-def fixed(options: argparse.Namespace, path: str) -> bytes:
-    """Return the text of a file with all its safe fixes."""
-    settings = _settings(options, path)
-    return fix(path, read_file(path), settings)[0] if settings else read_file(path)
+class LineEdit(NamedTuple):
+    """The lines from ``start`` on, before ``end``, and the text that replaces them."""
+
+    start: int
+    end: int
+    text: str
+
+
+def fixed(options: argparse.Namespace, path: str) -> Mapping[str, Sequence[LineEdit]]:
+    """Return the edits that fix all in a file that is safe to fix, by its path."""
+    settings, text = _settings(options, path), read_file(path)
+    return {path: _line_edits(text, fix(path, text, settings)[0])} if settings else {}
+
+
+def _line_edits(before: bytes, after: bytes) -> list[LineEdit]:
+    """Return the edits of lines that turn one text into another."""
+    old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
+    return [
+        LineEdit(start, end, b"".join(new[first:last]).decode())
+        for tag, start, end, first, last in SequenceMatcher(None, old, new).get_opcodes()
+        if tag != "equal"
+    ]
 
 
 def explain(options: argparse.Namespace, path: str, words: Sequence[str]) -> str:
@@ -100,12 +120,14 @@ def places(options: argparse.Namespace, path: str, at: tuple[int, int]) -> list[
     return find_places(path, at, _folder(path), *_definitions(options, path))
 
 
-def renamed(options: argparse.Namespace, path: str, place: Place, new: str) -> Mapping[str, bytes]:
-    """Return the files that ``multibot rename`` changes, by path."""
+def renamed(
+    options: argparse.Namespace, path: str, place: Place, new: str
+) -> Mapping[str, Sequence[LineEdit]]:
+    """Return the edits of ``multibot rename``, by the paths of the files."""
     definitions, distro = _definitions(options, path)
     name, kind, folder = place.name, place.kind, _folder(path)
     made = rename_symbol(name, new, folder, kind=kind, definitions=definitions, distro=distro)
-    return made.after
+    return {file: _line_edits(made.before[file], text) for file, text in made.after.items()}
 
 
 def _definitions(options: argparse.Namespace, path: str) -> tuple[tuple[str, ...], str]:

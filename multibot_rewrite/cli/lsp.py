@@ -11,12 +11,15 @@ import asyncio
 import gc
 import os
 import re
-from collections.abc import Callable, Mapping, Sequence
-from difflib import SequenceMatcher
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from io import StringIO
 from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import MultibotError, Unusable
 from multibot_rewrite.cli import answers
 from multibot_rewrite.cli.process import DONE
@@ -33,6 +36,8 @@ except ImportError as error:
 
 # Seconds: without a change before a file is linted, and after which an answer is given up.
 PAUSE, LONGEST = 0.03, 60.0
+# How many files are linted at once: on saving, all open ones.
+_AT_ONCE = max(4, os.cpu_count() or 1)
 _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
 # A tag with its bracket, an attribute with its value, or a word.
@@ -45,13 +50,15 @@ class Server(LanguageServer):
     """The open files of an editor, and the findings in them."""
 
     def __init__(self) -> None:
-        super().__init__("urdf-lint", __version__)
+        # pygls takes other characters for line ends than editors do, so it is to count no lines.
+        super().__init__("urdf-lint", __version__, lsp.TextDocumentSyncKind.Full)
         self.options = argparse.Namespace()
         self.context = get_context("forkserver")
         self.context.set_forkserver_preload(["multibot_rewrite.cli.warm"])
         self.found: dict[str, Sequence[Finding]] = {}
         self.running: dict[str, asyncio.Task[None]] = {}
-        self.waiting: list[tuple[Any, Any]] = []
+        self.waiting: list[tuple[Any, Connection]] = []
+        self.slots = asyncio.Semaphore(_AT_ONCE)
 
     def opened(self) -> dict[str, TextDocument]:
         """Return the open documents by their URIs as the editor writes them."""
@@ -64,8 +71,9 @@ class Server(LanguageServer):
         self.have_one_waiting()
         child, connection = self.waiting.pop()
         try:
-            connection.send((texts, function, self.options, path, *words))
-            answer = await asyncio.wait_for(asyncio.to_thread(connection.recv), LONGEST)
+            question = texts, function, self.options, path, *words
+            asking = asyncio.to_thread(_exchange, connection, question)
+            answer = await asyncio.wait_for(asking, LONGEST)
         except (EOFError, OSError, asyncio.TimeoutError):
             return None
         finally:
@@ -93,16 +101,20 @@ class Server(LanguageServer):
 
     async def _diagnose(self, uri: str) -> None:
         await asyncio.sleep(PAUSE)
-        found = await self.ask(answers.diagnose, uri) if uri in self.opened() else ()
+        async with self.slots:
+            found = await self.ask(answers.diagnose, uri) if uri in self.opened() else ()
         if found is None:
             return
         # An included file has the findings of all open files that include it.
         old, self.found[uri] = self.found.get(uri, ()), found
-        every = [(self.uri_of(it.file), it) for its in self.found.values() for it in its]
-        for each in {uri, *(self.uri_of(it.file) for it in (*old, *found))}:
+        every = [*old, *(it for its in self.found.values() for it in its)]
+        uris = {file: self.uri_of(file) for file in {it.file for it in every}}
+        for each in {uri, *(uris[it.file] for it in (*old, *found))}:
             document = self.workspace.get_text_document(each)
-            own = dict.fromkeys(it for file, it in every if file == each)
-            shown = [_diagnostic(document, it) for it in own]
+            # Once, however many uses of a macro or files that include it have the finding.
+            own = {_place(it): it for it in every[len(old) :] if uris[it.file] == each}
+            lines = _lines(document)
+            shown = [_diagnostic(document, lines, it) for it in own.values()]
             params = lsp.PublishDiagnosticsParams(each, shown, document.version)
             self.text_document_publish_diagnostics(params)
 
@@ -112,40 +124,56 @@ class Server(LanguageServer):
         known = (uri for uri, it in self.opened().items() if os.path.realpath(it.path) == real)
         return next(known, None) or from_fs_path(os.path.abspath(path)) or path
 
-    def edits_to(self, files: Mapping[str, bytes]) -> lsp.WorkspaceEdit:
-        """Return the edits of whole lines that give files these texts."""
-        changes: dict[str, list[lsp.TextEdit]] = {}
-        for path, text in files.items():
-            uri, new = self.uri_of(path), text.decode().splitlines(keepends=True)
-            old = self.workspace.get_text_document(uri).lines
-            parts = SequenceMatcher(None, old, new, False).get_opcodes()
-            changes[uri] = [
-                lsp.TextEdit(
-                    lsp.Range(lsp.Position(start, 0), lsp.Position(end, 0)),
-                    "".join(new[first:last]),
-                )
-                for tag, start, end, first, last in parts
-                if tag != "equal"
+    def edits_to(self, changes: Mapping[str, Sequence[answers.LineEdit]]) -> lsp.WorkspaceEdit:
+        """Return the edits of files' lines as the editor takes them."""
+        edits: dict[str, Sequence[lsp.TextEdit]] = {}
+        for path, its in changes.items():
+            edits[self.uri_of(path)] = [
+                lsp.TextEdit(lsp.Range(lsp.Position(it.start, 0), lsp.Position(it.end, 0)), it.text)
+                for it in its
             ]
-        return lsp.WorkspaceEdit(changes)
+        return lsp.WorkspaceEdit(edits)
 
-    def location(self, it: Place) -> lsp.Location:
-        """Return a place as the editor counts."""
-        document = self.workspace.get_text_document(self.uri_of(it.file))
-        return lsp.Location(document.uri, _range(document, *it.start, *it.end))
+    def locations(self, places: Iterable[Place]) -> list[lsp.Location]:
+        """Return places as the editor counts."""
+        found = []
+        for file, its in lists_by_key((it.file, it) for it in places).items():
+            document = self.workspace.get_text_document(self.uri_of(file))
+            lines = _lines(document)
+            ranges = (_range(document, lines, *it.start, *it.end) for it in its)
+            found += [lsp.Location(document.uri, it) for it in ranges]
+        return found
 
 
-def _range(document: TextDocument, line: int, column: int, end: int, last: int) -> lsp.Range:
+def _exchange(connection: Connection, question: object) -> Any:
+    connection.send(question)
+    return connection.recv()
+
+
+def _lines(document: TextDocument) -> Sequence[str]:
+    """Return the lines of a text as editors count them; none of a file that cannot be read."""
+    with suppress(OSError, ValueError):
+        return [*StringIO(document.source, newline="")]
+    return []
+
+
+def _range(
+    document: TextDocument, lines: Sequence[str], line: int, column: int, end: int, last: int
+) -> lsp.Range:
     """Return a range as the editor counts: from 0, in its units."""
     start, stop = lsp.Position(line - 1, column - 1), lsp.Position(end - 1, last - 1)
     units = document.position_codec.position_to_client_units
-    return lsp.Range(units(document.lines, start), units(document.lines, stop))
+    return lsp.Range(units(lines, start), units(lines, stop))
 
 
-def _diagnostic(document: TextDocument, it: Finding) -> lsp.Diagnostic:
+def _place(it: Finding) -> tuple[int, int, str, str]:
+    return it.line, it.column, it.code, it.message
+
+
+def _diagnostic(document: TextDocument, lines: Sequence[str], it: Finding) -> lsp.Diagnostic:
     line, column = max(it.line, 1), max(it.column, 1)
-    marked = _MARKED.match(next(iter(document.lines[line - 1 :]), ""), column - 1)
-    where = _range(document, line, column, line, (marked.end() if marked else column) + 1)
+    marked = _MARKED.match(next(iter(lines[line - 1 : line]), ""), column - 1)
+    where = _range(document, lines, line, column, line, (marked.end() if marked else column) + 1)
     message = ": ".join(filter(None, (it.robot, it.node, it.message)))
     text = "; ".join(filter(None, (message, it.hint)))
     severity = _SEVERITIES.get(it.level, lsp.DiagnosticSeverity.Information)
@@ -191,16 +219,17 @@ async def _actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
     fixable = [it for it in server.found.get(document.uri, ()) if it.edits]
     kinds = [_FIX_ALL] * bool(fixable) + [_FIX] * any(it.line in lines for it in fixable)
     asked = [it for it in kinds if it.startswith(tuple(params.context.only or [""]))]
-    text = await server.ask(answers.fixed, document.uri) if asked else None
-    if text is None:
+    fixes = await server.ask(answers.fixed, document.uri) if asked else None
+    if fixes is None:
         return []
-    edit = server.edits_to({document.path: text})
+    edit = server.edits_to(fixes)
     return [lsp.CodeAction("Fix all that urdf-lint can", it, edit=edit) for it in asked]
 
 
 async def _places(params: Any) -> list[Place]:
     document = server.workspace.get_text_document(params.text_document.uri)
-    at = document.position_from_client_units(params.position)
+    codec, lines = document.position_codec, _lines(document)
+    at = codec.position_from_client_units(lines, params.position)
     cursor = at.line + 1, at.character + 1
     return await server.ask(answers.places, document.uri, cursor) or []
 
@@ -210,7 +239,7 @@ async def _places(params: Any) -> list[Place]:
 async def _locations(params: Any) -> list[lsp.Location]:
     context = getattr(params, "context", None)  # that of references
     wanted = {False, context.include_declaration} if context else {True}
-    return [server.location(it) for it in await _places(params) if it.declares in wanted]
+    return server.locations(it for it in await _places(params) if it.declares in wanted)
 
 
 @server.feature(lsp.TEXT_DOCUMENT_RENAME)
