@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -140,13 +141,13 @@ def test_a_file_of_no_known_kind_has_no_findings(editor: Editor, package: Path) 
 
 
 def test_columns_are_those_of_the_editor(editor: Editor, package: Path) -> None:
-    """A character beyond the basic plane counts twice in UTF-16."""
+    """A character beyond the basic plane counts twice in UTF-16; U+2028 ends no line there."""
     path = package / "urdf" / "wide.urdf"
     line = '<!-- 🤖é --><parent link="a"/><child link="c"/>'
     links = '<robot name="r">\n<link name="a"/><link name="b"/>\n<joint name="j" type="fixed">'
-    text = f"{links}{line}</joint></robot>\n"
+    text = f"<!-- \u2028 -->\n{links}{line}</joint></robot>\n"
     (found,) = [it for it in editor.open(path, text) if it.code == "MB202"]
-    row = text.splitlines()[found.range.start.line].encode("utf-16-le")
+    row = text.split("\n")[found.range.start.line].encode("utf-16-le")
     start, end = (2 * it.character for it in (found.range.start, found.range.end))
     assert row[start:end].decode("utf-16-le") == 'link="c"'
     editor.close(path)
@@ -347,6 +348,32 @@ def test_what_takes_long_blocks_nothing_and_is_stopped(editor: Editor, package: 
     assert editor.times[path.as_uri()] == 0
     assert "MB101" not in codes(editor.change(path, text, text, MACRO))
     assert editor.times[path.as_uri()] == 1
+    editor.close(path)
+
+
+def test_a_quick_fix_of_a_large_file_blocks_nothing(editor: Editor, package: Path) -> None:
+    """The same line 30,000 times: each may be each of the others."""
+    path, comments = package / "urdf" / "large.urdf", "<!-- a -->\n" * 30_000
+    text = URDF.replace("<robot", '<robot xmlns:x="urn:x"').replace(
+        "</robot>", f"{comments}</robot>"
+    )
+    editor.open(path, text)
+    (every,) = editor.actions(path, 1, "source.fixAll")
+    assert every.edit and every.edit.changes and len(every.edit.changes[path.as_uri()]) == 1
+    editor.close(path)
+
+
+def test_a_process_that_dies_ends_no_server(editor: Editor, package: Path) -> None:
+    def children(pid: int) -> list[int]:
+        return [int(it) for it in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+    path, server = package / "urdf" / "killed.urdf", editor.client._server
+    assert server and "MB202" not in codes(editor.open(path, URDF))
+    for pid in [pid for own in children(server.pid) for pid in (*children(own), own)]:
+        os.kill(pid, signal.SIGKILL)
+    assert editor.hover(path, URDF, "<|joint") == ""  # the process that waited for it is gone
+    wrong = URDF.replace('child link="wheel"', 'child link="whel"')
+    assert "MB202" in codes(editor.change(path, wrong))
     editor.close(path)
 
 
