@@ -241,7 +241,9 @@ ARGUMENTS = (
 
 
 @pytest.mark.parametrize(("name", "files"), [(it, files) for it in MACHINES for files in (0, 1)])
-@pytest.mark.parametrize(("call", "which", "good", "bad"), ARGUMENTS, ids=lambda it: str(it)[:9])
+@pytest.mark.parametrize(
+    ("call", "which", "good", "bad"), ARGUMENTS, ids=[it[0] for it in ARGUMENTS]
+)
 def test_arguments_are_those_that_computing_needs(
     call: str, which: str, good: set[int], bad: tuple[int, ...], name: str, files: bool
 ) -> None:
