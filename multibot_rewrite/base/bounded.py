@@ -184,7 +184,7 @@ def _yaml_fault(error: Exception, text: str, file: str, remedy: str) -> str:
 
 
 def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None = None) -> Any:
-    """Return the value of a JSON text, with ``made`` for each object; raises JSONDecodeError."""
+    """Return the value of a JSON text; ``made`` replaces each object; raises JSONDecodeError."""
     import json
 
     raw = data if isinstance(data, bytes) else data.encode("utf-8", "surrogatepass")
@@ -193,6 +193,7 @@ def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None
         raise json.JSONDecodeError(f"it is nested deeper than {MAX_DEPTH} levels", text, 0)
 
     def whole(digits: str) -> int:
+        """Return the number of these digits; raises JSONDecodeError for too many."""
         if len(digits) > MAX_DIGITS:
             # Where it is does not matter to whoever made it.
             raise json.JSONDecodeError(_too_many_digits(digits), text, text.index(digits))

@@ -103,7 +103,7 @@ def parse(path: str, data: bytes) -> dict[str, object]:
     except (RecursionError, ValueError, LookupError, TypeError) as error:
         # Brackets in thousands, a number of thousands of digits: no parser's own error. That of Python
         # 3.10 fails in more ways.
-        raise UsageError(f"{path}: TOML that cannot be read: {error}") from None
+        raise UsageError(f"{path}: TOML that cannot be read, correct it: {error}") from None
 
 
 def _parser(path: str) -> Any:

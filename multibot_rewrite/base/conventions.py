@@ -14,7 +14,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 
 
 def _rows() -> Mapping[str, Sequence[tuple[list[str], str]]]:
-    """Return the words of each row and what follows them, by the parts of the table."""
+    """Return the table by its parts: of each row the words, and the text behind ``#``."""
     found: dict[str, list[tuple[list[str], str]]] = {}
     name = ""
     with open(os.path.join(os.path.dirname(__file__), "conventions.txt"), encoding="utf-8") as file:
@@ -164,12 +164,12 @@ TF_SWITCHES, STAMP_SWITCHES = "tf switches", "stamp switches"
 
 
 def switches(kind: str) -> Mapping[str, tuple[str, ...]]:
-    """Return the parameters that switch this, each with patterns of its nodes."""
+    """Return the parameters that switch ``kind``, such as tf, each with patterns of its nodes."""
     return {name: tuple(nodes) for (name, *nodes), _ in ROWS[kind]}
 
 
 def switch(kind: str, node: str) -> str:
-    """Return the parameter of a node that switches this; empty where none is known."""
+    """Return a node's parameter that switches ``kind``; empty where none is known."""
     last = node.rpartition("/")[2]
     found = (
         name for name, nodes in switches(kind).items() if _pattern_of_any(nodes).fullmatch(last)
@@ -187,7 +187,7 @@ _OUTSIDE = frozenset(word for words in FROM_OUTSIDE.values() for word in words)
 
 
 def is_from_outside(name: str) -> bool:
-    """Return whether it is a topic or service that no node of a robot needs to send."""
+    """Return whether a topic or service is one that no node of a robot needs to send."""
     return name.rpartition("/")[2] in _OUTSIDE
 
 
@@ -197,8 +197,9 @@ TEAMS = {name: tuple(nodes) for nodes, name in ROWS["teams"]}
 _CHOOSES = lazy_compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 
 
+@lru_cache(maxsize=4096)
 def team(node: str) -> str:
-    """Return the node's name, or the name of the nodes that it takes turns with."""
+    """Return the name of the team of nodes that take turns; a node without one is its own."""
     last = node.rpartition("/")[2]
     return next(
         (name for name, nodes in TEAMS.items() if _pattern_of_any(nodes).fullmatch(last)), node

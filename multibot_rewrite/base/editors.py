@@ -33,7 +33,7 @@ def schema_text(schema: str) -> bytes:
 
 
 def may_be_written(schema: str, path: str) -> bool:
-    """Return whether a schema may be written there: no file is, or one with another version of it."""
+    """Return whether a path is free for a schema: nothing is there, or another version of it."""
     if not os.path.lexists(path):
         return True
     own = _name_in(os.path.join(_PACKAGE, schema))

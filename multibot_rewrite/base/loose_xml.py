@@ -105,7 +105,7 @@ def _before_all(source: bytes) -> int:
 
 
 def _mended(part: re.Match[bytes], first: int) -> tuple[bytes, str]:
-    """Return a part of the text with its faults replaced, in as many bytes, and what was wrong."""
+    """Return a part of the text with its faults blanked, as long as before, and what was wrong."""
     text = part[0]
     if text.startswith(b"<!--"):
         inner = text[4:-3]

@@ -117,9 +117,7 @@ class Naming(NamedTuple):
 
 
 def leaves_world_systems(world_systems: str | None, robots: Sequence[str]) -> bool:
-    """Return whether world systems are left to the world; raises UsageError.
-
-    By default those of several robots are: each robot would load them again."""
+    """Return whether systems are left to the world, by default for several robots; or UsageError."""
     if world_systems is None:
         return len(robots) > 1
     _refuse_unknown("world_systems", world_systems, WORLD_SYSTEMS)
@@ -221,7 +219,7 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
         return _ros_affix(naming, separator, kind, text, in_namespace)
     if _is_shared_frame(naming, kind, text):
         return None
-    return _name_affix(naming.affix, separator, text)
+    return _affix_of_name(naming.affix, separator, text)
 
 
 def _ros_affix(
@@ -235,7 +233,7 @@ def _ros_affix(
         if not NOT_PLAIN.isdisjoint(text):
             return None
         # The root as a namespace: /robot1.
-        return _name_affix(naming.affix, separator if text.strip("/") else "", text)
+        return _affix_of_name(naming.affix, separator if text.strip("/") else "", text)
     return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
 
 
@@ -250,7 +248,7 @@ def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool =
 
 
 def is_of_world(topic: str) -> bool:
-    """Return whether it is a world's topic or service (``/world/w/set_pose``), not a model's.
+    """Return whether a topic or service (``/world/w/set_pose``) is a world's, not a model's.
 
     Source: gazebosim/gz-sim src/SimulationRunner.cc, systems/user_commands/UserCommands.cc,
     systems/scene_broadcaster/SceneBroadcaster.cc."""
@@ -259,11 +257,11 @@ def is_of_world(topic: str) -> bool:
 
 
 def is_keyword(text: str) -> bool:
-    """Return whether SDF reserves it, as ``__model__`` (sdformat Utils.cc isReservedName)."""
+    """Return whether SDF reserves a name, as ``__model__`` (sdformat Utils.cc isReservedName)."""
     return len(text) >= 4 and text.startswith("__") and text.endswith("__")
 
 
-def _name_affix(side: str, separator: str, text: str) -> Affix:
+def _affix_of_name(side: str, separator: str, text: str) -> Affix:
     if side == POSTFIX:
         return Affix(len(text), separator, "")
     return Affix(1 if text.startswith("/") else 0, "", separator)
@@ -284,7 +282,7 @@ def _topic_affix(naming: Naming, separator: str, text: str, below: bool) -> Affi
     if below and not text.startswith("/"):
         return None
     side = POSTFIX if naming.topics == POSTFIX else PREFIX
-    return _name_affix(side, separator, text)
+    return _affix_of_name(side, separator, text)
 
 
 def _namespace_affix(separator: str, text: str) -> Affix | None:
@@ -330,7 +328,7 @@ def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[
 
 
 def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]:
-    """Return pairs of robots of which two names can become one, each with the separator.
+    """Return pairs of robots of which two names can become one: robot, robot, separator.
 
     The name of one ends (begins) like the affix of the other: with a postfix, ``arm`` of ``left_b``
     and ``arm_left`` of ``b`` are both ``arm_left_b``."""

@@ -120,7 +120,7 @@ def extensions(word: str, choices: Iterable[str]) -> list[str]:
 
 
 def _hint(near: str) -> str:
-    """Return the question whether this name was meant; empty without one."""
+    """Return ``did you mean 'x'?`` for this name; empty without one."""
     return f"did you mean {near!r}?" if near else ""
 
 
@@ -140,7 +140,7 @@ def _name_parts(name: str) -> tuple[str, ...]:
 
 
 def _one_typo(words: Sequence[str], others: Sequence[str]) -> bool:
-    """Return whether they differ in one long word without digits, by one letter or two swapped."""
+    """Return whether two names differ in one long word without digits, by one letter or two swapped."""
     pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
     if len(pairs) != 1:
         return False

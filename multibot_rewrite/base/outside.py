@@ -49,6 +49,7 @@ def outside(function: Callable[_P, _T]) -> Callable[_P, _T]:
 
     @wraps(function)
     def asking(*arguments: _P.args, **named: _P.kwargs) -> _T:
+        """Return the answer of the function, noted where a job's questions are recorded."""
         notes = _NOTES.get()
         if notes is None:
             return function(*arguments, **named)
@@ -75,7 +76,7 @@ def recorded(job: Callable[[], _T]) -> tuple[_T, Asked | None]:
 
 
 def unrepeatable() -> None:
-    """Say that the result of what runs may be another one next time: it rests on time or memory."""
+    """Note that the result of the running job may differ next time: it rests on time or memory."""
     notes = _NOTES.get()
     if notes is not None:
         notes[UNREPEATABLE] = ""
@@ -128,13 +129,13 @@ def _noting_in(notes: Asked | None) -> Iterator[None]:
 
 @outside
 def is_file(path: str) -> bool:
-    """Return whether it is a file, or a link to one."""
+    """Return whether a path leads to a file, also by a link."""
     return os.path.isfile(path)
 
 
 @outside
 def is_folder(path: str) -> bool:
-    """Return whether it is a folder, or a link to one."""
+    """Return whether a path leads to a folder, also by a link."""
     return os.path.isdir(path)
 
 

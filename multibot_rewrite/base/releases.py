@@ -47,9 +47,7 @@ _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-
 
 
 def chosen_release(given: str, environment: Mapping[str, str]) -> str:
-    """Return the release asked for, or that of ROS_DISTRO or the sourced ROS, or the newest LTS.
-
-    Raises UsageError for a release that is not known."""
+    """Return the release asked for, of ROS_DISTRO, of sourced ROS, or the newest LTS; or UsageError."""
     found = given or environment.get(VARIABLE, "") or _sourced(environment) or NEWEST_LTS
     if found in RELEASES:
         return found
@@ -172,7 +170,7 @@ def since_version(words: str, release: str) -> str:
 
 
 def is_release_words(words: str) -> bool:
-    """Return whether these are release words, as above."""
+    """Return whether a text is release words, as ``has_release`` takes."""
     try:
         found = list(_terms(words))
     except UsageError:

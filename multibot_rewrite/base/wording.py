@@ -39,7 +39,7 @@ def only(names: Sequence[str]) -> str:
 
 
 def plural(count: int, word: str) -> str:
-    """Return a number with the word for the things counted."""
+    """Return a number and a noun, in the plural unless the number is 1."""
     ending = "es" if word.endswith("s") else "s"
     return f"{count} {word}{ending * (count != 1)}"
 

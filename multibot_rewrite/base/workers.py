@@ -56,7 +56,7 @@ class WorkerPool(Generic[_Item, _Made]):
             for fd in (*requests, *answers):
                 os.close(fd)
             if not self.workers:
-                raise UsageError(f"no process can be started: {error.strerror}") from None
+                raise UsageError(f"no process starts, end others: {error.strerror}") from None
             return
         if pid == 0:
             self._serve(requests, answers)

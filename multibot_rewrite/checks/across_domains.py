@@ -19,7 +19,7 @@ NOT_ACROSS = declare("MF849", "not-across-domains", ERROR, formats=("fleet",))
 
 
 def not_across(fleet: Fleet) -> Iterator[Finding]:
-    """Yield what the plan of a fleet has in the wrong domain."""
+    """Yield findings: calls, topics and nodes of a fleet that end at the border of a ROS domain."""
     apart = fleet.apart
     plan = planned(fleet) if apart.domains else System()
     yield from _of_simulator(apart, plan)

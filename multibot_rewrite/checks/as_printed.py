@@ -388,7 +388,7 @@ def _first_difference(planned: Any, printed: Any, where: str = "") -> tuple[str,
     # It differs for values of other types, which are equal.
     if repr(planned) == repr(printed):
         return None
-    if type(planned) is not type(printed) or not _is_deep(planned):
+    if type(planned) is not type(printed) or not _is_dict_or_list(planned):
         return where, planned, printed
     if isinstance(planned, dict):
         keys = dict.fromkeys((*planned, *printed))
@@ -400,7 +400,7 @@ def _first_difference(planned: Any, printed: Any, where: str = "") -> tuple[str,
     return next(filter(None, (_first_difference(one, other, at) for at, one, other in every)), None)
 
 
-def _is_deep(it: Any) -> bool:
+def _is_dict_or_list(it: Any) -> bool:
     return isinstance(it, dict | list)
 
 

@@ -226,7 +226,7 @@ def closed_plan(plan: FleetPlan) -> Fleet:
 
 
 def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
-    """Return what these bridges carry, but those of robots that may be real."""
+    """Return the topics that bridge files among ``texts`` carry, but those of maybe real robots."""
     # The shared one is left out if all robots may be real.
     maybe = plan.fleet.maybe_real
     real = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}
@@ -276,7 +276,7 @@ def _unused_shared_names(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def sorted_out(made: Iterable[OutputFile | Finding]) -> tuple[list[OutputFile], list[Finding]]:
-    """Return the files, and the findings."""
+    """Return two lists: the files, and the findings."""
     both = [*made]
     files = sorted(it for it in both if isinstance(it, OutputFile))
     return files, [it for it in both if isinstance(it, Finding)]

@@ -155,7 +155,7 @@ def _with_bridge_and_findings(
 def left_idle(
     nodes: Sequence[NodeFacts], given: Iterable[Run], known: Mapping[str, NodeFacts]
 ) -> Iterator[Finding]:
-    """Yield what starts and does nothing, by the robot's own parameter files."""
+    """Yield findings about nodes that start and do nothing, by the robot's own parameter files."""
     own = {it.node: it for it in given}
     yield from _unlisted(nodes, own)
     yield from _without_bond(nodes, own)

@@ -22,8 +22,10 @@ from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.launch.records import LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, launched
+from multibot_rewrite.producers.launch.spawners import NO_MANAGER
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch
+from multibot_rewrite.rules.launch.started import no_type
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import System
@@ -78,6 +80,7 @@ def as_in_the_vendors_files(plan: FleetPlan, found: Iterable[Finding]) -> Iterat
 
 
 def _errors_in(path: str, release: str) -> Set[tuple[str, int]]:
+    """Return code and line of each error in a parameter file by itself."""
     from multibot_rewrite.lint.check import lint_data
     from multibot_rewrite.rules.settings import Settings
 
@@ -116,7 +119,9 @@ def _is_error_of_robot(errors: Iterable[_Error], it: Finding, seen: Index, robot
     """Return whether a finding about a fleet is an error of this robot alone."""
     # Nodes of other robots, or outside its launch files, have no part in it.
     own = _plain_error(it, seen)
-    alike = [one for one in errors if one.code == own.code and own.names <= one.names]
+    # Where nothing starts a manager, nothing is wrong with its controllers.
+    codes = (own.code, NO_MANAGER.code) if own.code == no_type.code else (own.code,)
+    alike = [one for one in errors if one.code in codes and own.names <= one.names]
     known = {part for one in alike for part in one.parts}
     if not (own.names and alike):
         return False
@@ -145,6 +150,7 @@ def _robots_of(it: Finding, seen: Index) -> set[str]:
 
 
 def _plain_error(it: Finding, fleet: Index) -> _Error:
+    """Return code and names of an error, the names without the robot's."""
     # What is said of words begins with their node.
     names = it.names or (it.node or it.message,)
     plain = (fleet.plain(it) if it.startswith("/") else fleet.plain_frame(it) for it in names)
@@ -152,11 +158,12 @@ def _plain_error(it: Finding, fleet: Index) -> _Error:
 
 
 def _plain_parts(parts: Iterable[_Part], fleet: Index) -> set[_Part]:
+    """Return pairs of role and node, the nodes without the robot's name."""
     return {(role, fleet.plain(node)) for role, node in parts}
 
 
 def _nodes_by_name(it: Finding, system: System) -> Mapping[str, Set[_Part]]:
-    """Return the nodes that have what a finding names: by name, transforms by their tf topic."""
+    """Return by each name of a finding (role, node) of what has it; of a frame its senders."""
     ends = ((end.name, (end.role, end.node)) for end in system.ends if end.name in it.names)
     edges = (edge for edge in system.edges if edge.child in it.names)
     sent = ((tree_topic(edge.topic), ("sends", node)) for edge in edges for node in edge.publishers)

@@ -135,13 +135,13 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
             keys = ((one, (one.get("name", ""), (one.text or "").strip())) for one in params)
             met = [one for one, key in keys if count.get(key, 0) > 1]
             hints[sources] = own_value(sources_of(robot.written, robot.member, met))
-        yield _of_the_fleet(it, "; ".join(filter(None, (it.hint, hints[sources]))))
+        yield _for_fleet_with_hint(it, "; ".join(filter(None, (it.hint, hints[sources]))))
     of_all = Counter(path for it in robots for path in it.spec.related_files.get("params", ()))
     # What a file for several robots has is told there, or numbered.
     shared = frozenset(path for path, count in of_all.items() if count > 1)
     given = [one for it in robots for one in _in_nodes(it, plan.evidence_of(it), known, shared)]
     given += [one for it in robots for one in _argument_addresses(it, plan.evidence_of(it))]
-    yield from (_of_the_fleet(it, it.hint) for it in _conflicts(robots, given))
+    yield from (_for_fleet_with_hint(it, it.hint) for it in _conflicts(robots, given))
 
 
 def _conflicts(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
@@ -152,7 +152,7 @@ def _conflicts(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -
     yield from (it for it in found if it.code == one_device.code)
 
 
-def _of_the_fleet(it: Finding, hint: str) -> Finding:
+def _for_fleet_with_hint(it: Finding, hint: str) -> Finding:
     return it._replace(message=f"{it.node} {it.message}", hint=hint, node="", robot="")
 
 
@@ -196,7 +196,7 @@ def _too_near(plan: FleetPlan) -> Iterator[Finding]:
     # A robot turns in its place, so half of the larger one's reach is allowed. Somebody else may
     # place a fleet, but the launch file of a build does not.
     robots = [it for it in plan.robots if is_simulated(it)]
-    if not any(any(_start_at(it.spec)) for it in robots):
+    if not any(any(_start_position(it.spec)) for it in robots):
         if len(robots) > 1:
             room = max(1, ceil(4 * max(map(_filled_radius, robots))))
             message = f"the {len(robots)} robots are spawned at the origin, in each other"
@@ -205,7 +205,9 @@ def _too_near(plan: FleetPlan) -> Iterator[Finding]:
         return
     sources = [it.spec.sources for it in robots]
     reach = {key: _filled_radius(it) for key, it in dict(zip(sources, robots, strict=True)).items()}
-    placed = [(it, _start_at(it.spec), reach[key]) for key, it in zip(sources, robots, strict=True)]
+    placed = [
+        (it, _start_position(it.spec), reach[key]) for key, it in zip(sources, robots, strict=True)
+    ]
     pairs = combinations(placed, 2) if len(placed) <= MOST else pairwise(placed)
     for (one, here, own), (other, there, more) in pairs:
         if (gap := dist(here, there)) < own + more:
@@ -220,7 +222,7 @@ def _filled_radius(it: RewrittenRobot) -> float:
     return filled_by(it.member.inventory.document.root)
 
 
-def _start_at(spec: RobotSpec) -> tuple[float, float, float]:
+def _start_position(spec: RobotSpec) -> tuple[float, float, float]:
     pose = spec.pose or Pose()
     return pose.x, pose.y, pose.z
 

@@ -75,6 +75,7 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
 
 
 def _findings_of_sample(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
+    """Return what is wrong with the files of some robots, or of all where these are not enough."""
     sample = two_of_each(made, [it.spec for it in plan.robots])
     found, graph = _read_launch(plan, sample.made, folder)
     alone = all(it.robots or it.robot in sample.alike for it in found)
@@ -84,6 +85,7 @@ def _findings_of_sample(plan: FleetPlan, made: Outputs, folder: str) -> list[Fin
 
 
 def _read_launch(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], LaunchGraph]:
+    """Return what is wrong with the files, and the graph that their launch file starts."""
     with _temporary_folder() as above, gc_paused():
         home, own = os.path.join(above, "built"), os.path.join(above, "launch")
         os.makedirs(own)
@@ -207,7 +209,7 @@ def _temporary_folder() -> Iterator[str]:
             yield folder
     except OSError as error:
         file = f" {error.filename}" if error.filename else ""
-        reason = error.strerror or error
+        reason = f"{error.strerror or error}; free some space, or set TMPDIR"
         raise MultibotError(f"a temporary file{file} cannot be written: {reason}") from None
 
 

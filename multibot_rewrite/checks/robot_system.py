@@ -298,7 +298,7 @@ def _with_interfaces(
 
 
 def _names_by_argument_text(robot: RewrittenRobot) -> Mapping[str, str]:
-    """Return names without a xacro argument, by the names with it."""
+    """Return names without a xacro argument's value, by the names with that."""
     return {text: name.lstrip("/") for (_, name), text in robot.names.own.items()}
 
 

@@ -96,6 +96,7 @@ def _parts_by_name(pattern: re.Pattern[str], text: str) -> dict[str, str]:
 
 
 def _sort_of(it: RobotSpec, parts: Iterable[str], files: Mapping[str, OutputFile]) -> _Sort:
+    """Return what tells sorts of robots apart: its files and parts without its own words, its pose."""
     named = {path for part in parts for path in _FILE.findall(part) if path in files}
     own = sorted({*named, *(path for path in files if path.startswith(f"{it.name}/"))})
     texts = (files[path].text for path in own if not path.endswith(_NOT_READ))

@@ -122,6 +122,7 @@ def _known_hashes(folder: str) -> dict[str, str]:
 
 
 def _manifest_hashes(folder: str, name: str) -> dict[str, str]:
+    """Return the hash of each file that a manifest lists, and its own; empty without a manifest."""
     path = os.path.join(folder, name)
     if not os.path.exists(path):
         return {}

@@ -124,7 +124,7 @@ def _check_use(options: argparse.Namespace) -> None:
 
 
 def plan_of(options: argparse.Namespace) -> System:
-    """Return the plan in a file or of a fleet file; for a snapshot, that all of it is there again."""
+    """Return the plan in a file or of a fleet file; of a snapshot, a plan of all that it saw."""
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
     if recognised(data) == SNAPSHOT:
@@ -219,6 +219,7 @@ def _watch(
     print_lines(map(str, gaps))
 
     def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:
+        """Return the joined graph, how much of the robots it has, and the findings."""
         graph = side_by_side(views)
         found = check_domains(plan, views) if domains else check(plan, graph, before=before)
         return graph, coverage(plan, graph), found

@@ -52,7 +52,7 @@ def check_use(options: argparse.Namespace, command: str, printed: bool) -> None:
 
 
 def build(options: argparse.Namespace) -> Fleet:
-    """Make the fleet that the options describe."""
+    """Return the fleet that the options describe, a fleet file or a description."""
     made = (_fleet_of_file if options.input.endswith(FLEET_FILES) else _fleet_of_words)(options)
     note_interfaces(options, made.facts)
     check_unread(options, made)

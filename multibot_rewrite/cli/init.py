@@ -150,7 +150,7 @@ def _check_arguments(made: Proposal, wanted: Wanted) -> None:
     left = [f"{name}:={value}" for name, value in wanted.arguments.items() if name not in taken]
     if left and not any(it.related_files.srdf.endswith(".xacro") for it in made.members):
         files = ", ".join(it.looked.path for it in made.members)
-        raise UsageError(f"{left[0]}: no argument of {files} has this name")
+        raise UsageError(f"{left[0]}: no argument of {files} has this name; leave it out")
 
 
 def _check_output(options: argparse.Namespace) -> None:

@@ -157,6 +157,7 @@ def details(sections: Sequence[PluginDefinition]) -> Iterator[str | Grid]:
 
 
 def _site_row(site: SiteRow, section: PluginDefinition) -> tuple[str, ...]:
+    """Return a row of the table: path, role, kinds, form, default, note, place."""
     not_inserted = " (not inserted)" if site.default and not section.inserts else ""
     block = block_of(site)
     shared = f" [block {block}]" if block else ""
@@ -310,7 +311,7 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
     """Return the only argument, a xacro file; raises UsageError."""
     missing = next((it for it in words if not os.path.lexists(it)), None)
     if missing is not None:
-        raise UsageError(f"{missing}: there is no such file or folder")
+        raise UsageError(f"{missing}: there is no such file or folder; correct the path")
     if not words:
         raise UsageError(f"{options.words[0]} is an argument of a xacro file; name the file")
     check_xacro(options, words)

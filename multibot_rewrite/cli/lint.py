@@ -129,7 +129,7 @@ def _files_to_lint(
     if read.left_out:
         note(options, read.left_out)
     if not kept:
-        raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")
+        raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint; name a file itself")
     if not options.changed_since:
         return kept, refused
     from multibot_rewrite.lint.config.changed import changed_since  # a plain run needs no git
@@ -251,7 +251,7 @@ def check_use(options: argparse.Namespace) -> None:
     if not paths:
         raise UsageError("no PATH given; for example: urdf-lint urdf/")
     if "" in paths:
-        raise UsageError("the name of a file is empty")
+        raise UsageError("the name of a file is empty; write its path")
     if "-" in paths and (len(paths) > 1 or options.fix or options.changed_since):
         raise UsageError("standard input is linted alone, without --fix and --changed-since")
     if options.diff and not options.fix:

@@ -23,7 +23,7 @@ from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 
 
 def is_program(word: str) -> bool:
-    """Return whether it is a program of an installed package, or a class of one."""
+    """Return whether a word is a program of an installed package, or a class of one."""
     folder, name = os.path.split(word)
     named = bool(folder and name) and not os.path.lexists(word)
     return named and os.path.isfile(os.path.join(folder, MANIFEST))

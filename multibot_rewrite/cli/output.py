@@ -73,7 +73,7 @@ def with_schema(path: str, data: bytes, schema: str) -> list[tuple[str, bytes]]:
 
 
 def _read_files(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
-    """Yield each option that names files to read, with each of its files."""
+    """Yield (option, path) for each file that an option names to be read."""
     for name in READ:
         value = getattr(options, name, None) or ()
         yield from ((name, it) for it in ([value] if isinstance(value, str) else value))
@@ -92,8 +92,8 @@ def check_there(options: argparse.Namespace) -> None:
         beside = os.listdir(folder or ".") if os.path.isdir(folder or ".") else []
         is_fleet = path.endswith((".yaml", ".yml")) and options.command in TAKE_FLEETS
         kind = "fleet" if option == "input" and is_fleet else option
-        hint = did_you_mean(name, sorted(beside)) or MADE_BY.get(kind, "")
-        raise UsageError(f"{path} is not there{hint and f'; {hint}'}")
+        hint = did_you_mean(name, sorted(beside)) or MADE_BY.get(kind, "correct the path")
+        raise UsageError(f"{path} is not there; {hint}")
 
 
 def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]]) -> None:

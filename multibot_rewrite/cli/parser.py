@@ -197,11 +197,11 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
         parser.error(f"unexpected {what}")
     options.program = parser.prog.partition(" ")[0]
     if "sources" in options:
-        _tell_sources(options)
+        _set_sources(options)
     return options
 
 
-def _tell_sources(options: argparse.Namespace) -> None:
+def _set_sources(options: argparse.Namespace) -> None:
     """Set the options for a graph's sources by kind; raises UsageError for several kinds."""
     saved, *others = ([it for of, it in options.sources if of == kind] for kind in SOURCES)
     single = [it for its in others for it in its]

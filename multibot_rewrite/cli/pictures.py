@@ -70,7 +70,7 @@ def conclude(
     outcome: Outcome,
     about: About,
 ) -> None:
-    """Write the page if it is asked for, and say the verdict behind how much it is about."""
+    """Write the page if it is asked for, and print the verdict behind how much it is about."""
     deliver(options, plan, graph, found, outcome)
     verdict = f"{counted_findings(found)}: {outcome.words}{facts_of_release(about.release)}"
     note(options, with_coverage(about.coverage, verdict))

@@ -52,7 +52,7 @@ def start(command: Command, words: Sequence[str], prog: str = "") -> int:
         # ImportError. A shell's job in the background has SIG_IGN; a process is ours where
         # ``guarded`` has set SIGTERM.
         ours = signal.getsignal(signal.SIGTERM) is signal.default_int_handler
-        if ours and signal.getsignal(signal.SIGINT) is signal.SIG_DFL:
+        if ours and signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
             signal.signal(signal.SIGINT, signal.default_int_handler)
         check_there(options)
         code: int = run(options)

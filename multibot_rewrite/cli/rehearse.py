@@ -74,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
 def _play(
     options: argparse.Namespace, plan: System, nodes: Sequence[Stub]
 ) -> tuple[dict[int, System], dict[str, str]]:
-    """Play the stubs; return the graph of each domain of the plan, and the replaced types."""
+    """Play the stubs; return the graph by domain of the plan, and by missing type its substitute."""
     # The domains they are played in are free ones of this machine.
     parts, numbers = by_domain(plan) or {ONE: plan}, domain_of(plan)
     environs = isolated_environments(options.domain, len(parts))

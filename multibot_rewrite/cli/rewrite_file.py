@@ -37,10 +37,10 @@ WORDS = {
 
 
 def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
-    """Rewrite it for each robot; returns the exit code."""
+    """Rewrite a related file for each robot; returns the exit code."""
     if options.undo or options.output_kind == CHANGES:
         what = "--undo" if options.undo else "--output-kind changes"
-        raise UsageError(f"{what} is for descriptions, {input_name(options)} is none")
+        raise UsageError(f"{what} is for descriptions, {input_name(options)} is none; leave it out")
     before = read_whole(source, {}, options.trust)
 
     def made(naming: Mapping[str, Any]) -> list[RewrittenFile]:

@@ -43,7 +43,7 @@ CHANGES = "changes"
 def check_use(options: argparse.Namespace, names: list[str]) -> None:
     """Raise UsageError for missing arguments and for options that exclude each other."""
     if options.input == "":
-        raise UsageError("the name of the input is empty")
+        raise UsageError("the name of the input is empty; write its path")
     if options.input is None:
         raise UsageError("no INPUT and no ROBOT given; see urdf-postfix --help")
     if not names:
@@ -54,7 +54,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     _check_together(options)
     inputs = (options.input, options.urdf or "", options.xacro or "")
     if xacro_args(options) and not any(is_xacro(path) for path in inputs):
-        raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is no xacro")
+        raise UsageError(f"{input_name(options)} is no xacro: leave out NAME:=VALUE")
     if len(names) > 1 and (options.undo or options.in_place):
         raise UsageError("--undo and --in-place take one robot at a time")
     check_report(options, printed=not (options.output or options.in_place))
@@ -164,7 +164,7 @@ def deliver(
     target = options.input if options.in_place else options.output
     if target:
         files = ((target_path(target, robot), data) for robot, _, data in results)
-        every = files if options.in_place else map(_no_link, files)
+        every = files if options.in_place else map(_unless_link, files)
         write_files(options, watched(every, total, "writing"))
         return
     colour = prints_colour(options)
@@ -174,7 +174,7 @@ def deliver(
         print_bytes(text)
 
 
-def _no_link(item: tuple[str, bytes]) -> tuple[str, bytes]:
+def _unless_link(item: tuple[str, bytes]) -> tuple[str, bytes]:
     check_link(item[0])
     return item
 

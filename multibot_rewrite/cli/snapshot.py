@@ -128,6 +128,7 @@ def report(snapshot: System) -> Iterator[str | Grid]:
 
 
 def _state_rows(snapshot: System, nodes: Iterable[str]) -> Iterator[tuple[str, ...]]:
+    """Yield a row for each node: name, state, use_sim_time, controllers."""
     states = {it.name: it.lifecycle for it in snapshot.nodes}
     timed = {node: str(it).lower() for node, it in clocks(snapshot).items()}
     for node in sorted(nodes):

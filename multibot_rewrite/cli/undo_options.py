@@ -58,7 +58,7 @@ def more_to_undo(stripped: bytes, options: argparse.Namespace, undo: Undo, robot
 def _best_options(
     options: argparse.Namespace, undo: Undo, robot: str, shared: Sequence[str] = ()
 ) -> tuple[float, str]:
-    """Return how often the name is left after the best added options, and the fewest such options."""
+    """Return how often the name is left with the best options, and the fewest such options."""
     best: tuple[float, str] = inf, ""
     for more in _missing_options(options, [*shared]):
         try:
@@ -66,7 +66,7 @@ def _best_options(
         except MultibotError:
             continue
         left = made.count(robot.encode())
-        best = best if best[0] <= left else (left, _options_text(more))
+        best = best if best[0] <= left else (left, _as_command_line(more))
     return best
 
 
@@ -80,7 +80,7 @@ def _missing_options(options: argparse.Namespace, shared: list[str]) -> Iterator
     yield from sorted(filter(None, named), key=len)
 
 
-def _options_text(more: dict[str, Any]) -> str:
+def _as_command_line(more: dict[str, Any]) -> str:
     return " ".join(
         f"--{name} {','.join(value) if isinstance(value, list) else value}"
         for name, value in more.items()

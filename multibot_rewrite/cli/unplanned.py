@@ -119,7 +119,7 @@ def _report(
 
 
 def _about(options: argparse.Namespace, seen: Diagnosis) -> About:
-    """Return what the findings are about."""
+    """Return the ``About`` of a report: what the findings are about."""
     return About(options.snapshot, by_themselves(seen.whose.robots), coverage=seen.coverage)
 
 
@@ -173,6 +173,7 @@ def _judging(each: dict[int, Diagnosis]) -> Look:
     known: dict[str, set[str]] = {}
 
     def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:
+        """Return graph, coverage and findings of one view; robots of earlier ones may be missing."""
         each.update({at: diagnose(it) for at, it in views.items()})
         seen = diagnose_domains(each) if len(each) > 1 else next(iter(each.values()))
         there = {it.name for it in seen.graph.nodes if not is_tool(it.name)}

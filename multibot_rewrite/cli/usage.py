@@ -116,7 +116,7 @@ def arguments_alone(options: argparse.Namespace) -> dict[str, str]:
 def check_xacro(options: argparse.Namespace, paths: Sequence[str]) -> None:
     """Raise UsageError for xacro arguments that none of the files takes."""
     if xacro_args(options) and not any(is_xacro(path) for path in paths):
-        raise UsageError(f"NAME:=VALUE is for xacro, {paths[0]} is no xacro")
+        raise UsageError(f"{paths[0]} is no xacro: leave out NAME:=VALUE")
 
 
 def given_options(options: argparse.Namespace, names: Mapping[str, str]) -> list[str]:

@@ -53,7 +53,7 @@ def folders(text: str) -> list[str]:
     """Return ``a,b`` as two folders that exist."""
     found = names(text)
     if gone := next((it for it in found if not os.path.isdir(it)), ""):
-        raise argparse.ArgumentTypeError(f"{gone!r} is no folder")
+        raise argparse.ArgumentTypeError(f"{gone!r} is no folder, name one that is there")
     return found
 
 

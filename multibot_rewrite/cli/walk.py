@@ -52,7 +52,7 @@ def find_files(
     every: list[str] = []
     for path in paths:
         if not os.path.exists(path):
-            raise UsageError(f"{path}: there is no such file or folder")
+            raise UsageError(f"{path}: there is no such file or folder; correct the path")
         kept = None if everything else left_out
         below = _files_below(path, suffixes, unreadable, kept)
         every += filter(wanted, below) if os.path.isdir(path) else (path,)
@@ -148,4 +148,4 @@ def check_folder(target: str) -> None:
 
     above = existing_folder(target)
     if not os.path.isdir(above):
-        raise UsageError(f"{target}: cannot be written: {above} is a file, not a folder")
+        raise UsageError(f"{target}: cannot be written: {above} is a file; name another folder")

@@ -27,12 +27,13 @@ def run(options: argparse.Namespace) -> int:
     options.definitions = [*configured_definitions(path), *options.definitions]
     found = explain(path, line, robot, **rewriting(options))
     if not found:
-        raise UsageError(f"{options.why}: no value starts on this line")
+        raise UsageError(f"{options.why}: no value starts on this line; name another")
     deliver_report(options, (line for it in found for line in _explanation_lines(it, path, robot)))
     return DONE
 
 
 def _file_and_line(text: str) -> tuple[str, int]:
+    """Return path and line of ``FILE:LINE``; raises UsageError for another text."""
     path, colon, line = text.rpartition(":")
     if not colon or not line.isdigit() or not path:
         raise UsageError(f"--why {text}: write FILE:LINE, for example rover.urdf:34")

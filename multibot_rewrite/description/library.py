@@ -285,6 +285,7 @@ def explain(
     given = (naming, urdf, xacro_args, definitions, file, [robot], trust)
 
     def explaining(whole: Source) -> tuple[Document, OnLine]:
+        """Return the document of a description, and a function that explains a line of it."""
         job = read_job(whole, *given, release=release)
         document = read_document(job.data, job.file)
         inventory = collect(document, job.tree, job.urdf_declarations, job.naming.read_as)

@@ -69,7 +69,7 @@ class Port(NamedTuple):
 
     @property
     def is_written(self) -> bool:
-        """Return whether it is no default."""
+        """Return whether the file sets the port, so that it is no default."""
         return self.start < self.end
 
 
@@ -81,7 +81,7 @@ class Numbered(NamedTuple):
 
 
 def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
-    """Give each robot, a text with its ports, the numbers that no earlier one has; raises nothing."""
+    """Return texts of robots in which no two have a number in common; raises nothing."""
     taken = {port.number for _, own in robots.values() for port in own}
     held: set[int] = set()
     given: dict[str, list[tuple[str, int]]] = {}
@@ -102,7 +102,7 @@ def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
 
 
 def numbers_message(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, str]:
-    """Return which number each robot got for a port, and what to do; raises nothing."""
+    """Return message and hint: which number each robot got for a port; raises nothing."""
     words = [f"{robot} {number}" for robot, number in given]
     more = f" and {len(words) - _NAMED} more" if words[_NAMED:] else ""
     message = f"{name} is numbered: {', '.join(words[:_NAMED])}{more}"
@@ -135,6 +135,7 @@ def ports_of(inventory: Inventory) -> Iterator[Port]:
 def _written_ports(
     source: bytes, start: int, element: _Element, opened: grammar.Opened
 ) -> Iterator[Port]:
+    """Yield the port that an element's text is, if it is a number above 0."""
     text = text_of(element)
     slot = text_slot(source, start, text) if text.isdecimal() and int(text) else None
     if slot:
@@ -159,6 +160,7 @@ def _default(
 
 
 def _port_edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
+    """Return the edits that give a robot its numbers, each after a comment with the old one."""
     edits = []
     # What is put at the begin of another element stands before its comment.
     for it, number in sorted(given, key=lambda pair: pair[0].is_written):
@@ -181,12 +183,12 @@ def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
     before, now = (ports_of(collect(it, tree)) for it in (read_document(text, file), document))
     again = _port_edits(robot, ((it, new.number) for it, new in zip(before, now, strict=False)))
     if b"".join(cut(text, again)) != source:
-        raise _edited_by_hand(document, robot)
+        raise _error_for_edit_by_hand(document, robot)
     return text
 
 
-def _edited_by_hand(document: Document, robot: str) -> InputError:
-    what = f"a number of {robot} or the comment before it was edited by hand"
+def _error_for_edit_by_hand(document: Document, robot: str) -> InputError:
+    what = f"a number of {robot} or the comment before it was edited by hand; restore it"
     return InputError(f"{document.file}: {what}")
 
 
@@ -202,7 +204,7 @@ def _taken_out(document: Document, robot: str) -> Iterator[Edit]:
         mark, old = f"<!--{said}-->".encode(), said[len(head) : -len(tail)]
         slot = text_slot(source, start, text_of(element)) if element is not None else None
         if slot is None or not source.endswith(mark, 0, start):
-            raise _edited_by_hand(document, robot)
+            raise _error_for_edit_by_hand(document, robot)
         end = end_of(source, start) if old == _DEFAULT else start
         yield Edit(start - len(mark), end, b"", None)
         if old != _DEFAULT:

@@ -125,7 +125,7 @@ def make_plan(
 def _evidence(
     file: FleetFile, robots: Sequence[RewrittenRobot], notes: Mapping[str, Sequence[Finding]]
 ) -> tuple[dict[NodeSources, RobotEvidence], frozenset[str]]:
-    """Return what files say of the nodes of each kind of robot, and namespaces that may be real."""
+    """Return what files say of the nodes of each kind of robot; and namespaces that may be real."""
     specs = {node_sources(it): it for it in reversed(file.robots)}
     first = {node_sources(it.spec): it for it in reversed(robots)}
     found = {
@@ -156,6 +156,7 @@ def _joined_fleet(
     naming: Naming,
     evidence: Mapping[NodeSources, RobotEvidence],
 ) -> Fleet:
+    """Return one fleet of robots that run different nodes, with the findings about them."""
     fleets: list[Fleet] = []
     notes: list[Finding] = []
     for key, group in lists_by_key((node_sources(it.spec), it.member) for it in robots).items():

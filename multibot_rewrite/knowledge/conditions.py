@@ -61,6 +61,7 @@ def condition_in_release(text: str, release: str) -> str | None:
     """Return the condition without its releases; None if it never holds in this one."""
 
     def decide(it: Condition) -> bool | None:
+        """Return whether a term about releases holds in this one; None for another term."""
         return has_release(by_version(it.values[0]), release) if it.parameter == RELEASE else None
 
     return settled(text, decide)
@@ -165,7 +166,7 @@ def _is_true(it: Condition, value_of: Values) -> bool | None:
 
 
 def _is_so(it: Condition, value_of: Values) -> bool | None:
-    """Return whether a term about no parameter holds; None if the values leave it open."""
+    """Return whether a term holds that is no comparison of a parameter; None if that is open."""
     if it.parameter == "run":
         simulated = value_of("use_sim_time")
         return simulated == (it.values == ("simulated",)) if isinstance(simulated, bool) else None

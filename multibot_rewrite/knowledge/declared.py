@@ -106,7 +106,7 @@ def stands_for(path: str, name: str) -> dict[str, str]:
 
 
 def says_something(path: str) -> bool:
-    """Return whether a path has more than words in brackets, which match any name."""
+    """Return whether a path has more than words in brackets, so that not every name matches."""
     return _EVERY.fullmatch(path) is None
 
 

@@ -119,6 +119,7 @@ def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
 
 
 def _all_nodes(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
+    """Yield the nodes of a node set and of those it includes; raises UsageError for a circle."""
     if name in above:
         raise UsageError(f"node set {name!r} includes itself: {' -> '.join((*above, name))}")
     node_set = library.node_sets[name]
@@ -245,7 +246,7 @@ def _read_node_of_set(item: YamlItem, library: NodeLibrary) -> NodeFacts:
 
 
 def _usual(values: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
-    """Yield the parameters that the node set's own file gives a node."""
+    """Yield (name, value) of parameters that the node set's own file gives a node."""
     for name, item in values.items():
         if not isinstance(item.value, str | float | int):
             wrong(item, f"parameter {name} is no word or number")
@@ -258,9 +259,9 @@ def _usual(values: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
 
 
 def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:
-    """Return the endpoints with the names that parameters set."""
+    """Return the endpoints, those under ``names`` with the names that parameters set."""
     for given, item in table_of(keys, "names").items():
-        if not any(_has(endpoint, given) for endpoint in endpoints):
+        if not any(_has_endpoint_name(endpoint, given) for endpoint in endpoints):
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
         values = [word(entry, f"names {given}") for entry in entries(item, f"names {given}")]
         made = []
@@ -268,7 +269,7 @@ def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tup
             # One for each value if it has the name, else itself.
             names = (endpoint.name.replace(given, it) for it in values)
             first = endpoint.named_from or endpoint.name
-            if _has(endpoint, given):
+            if _has_endpoint_name(endpoint, given):
                 new = (endpoint._replace(name=it, fixed="", named_from=first) for it in names)
                 made += [checked_endpoint(item, it) for it in new]
             else:
@@ -277,7 +278,7 @@ def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tup
     return endpoints
 
 
-def _has(endpoint: Endpoint, given: str) -> bool:
+def _has_endpoint_name(endpoint: Endpoint, given: str) -> bool:
     """Return whether a name is that of the endpoint, or a part of it that is made at run time."""
     return given in endpoint.name if given.startswith("<") else given == endpoint.name
 

@@ -51,7 +51,7 @@ def is_absolute(param: Param, release: str) -> bool:
 
 
 def is_below_costmap(plugin: str) -> bool:
-    """Return whether it is the one filter with topics below the costmap in every release."""
+    """Return whether a plugin is the one filter with topics below the costmap in every release."""
     return "BinaryFilter" in plugin
 
 

@@ -73,5 +73,5 @@ def container_of(release: str) -> Program:
 
 
 def is_unmanaged(node: NodeFacts, release: str) -> bool:
-    """Return whether it has a life cycle that no lifecycle manager of Nav2 takes care of."""
+    """Return whether a node has a life cycle that no lifecycle manager of Nav2 takes care of."""
     return bool(node.unmanaged) and has_release(node.unmanaged, release)

@@ -16,7 +16,7 @@ _ROWS = own_rows(__file__, "worlds.schema")
 
 
 def _rows_of(kind: str) -> Iterator[tuple[str, list[str]]]:
-    """Yield the library and the words of each row of a kind."""
+    """Yield (library, words) of each row of a kind."""
     yield from ((library, words.split()) for library, what, words in _ROWS if what == kind)
 
 

@@ -53,6 +53,7 @@ def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Act
         each_robot(LaunchConfiguration("fleet"), lambda robot: [Node(..., **robot.node("amcl"))])"""
 
     def groups(context: Context) -> list[Action]:
+        """Return a group of actions for each chosen robot."""
         names = listed(context, robots)
         if "=" in (text := ",".join(names)):
             context.launch_configurations[ROBOTS], names = text, []
@@ -93,6 +94,7 @@ def composable_node(name_in_set: Text = "", **options: Any) -> Any:
     own, first = _split_options("composable_node", name_in_set, options)
 
     def made(context: Context) -> dict[str, Any]:
+        """Return the keywords of the component in this launch."""
         name, its = perform(context, name_in_set), robot_of(context, own["of"])
         return _node_options(context, name, own, _with_program(its, name, first, component=True))
 
@@ -106,6 +108,7 @@ def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: An
     of = RobotRef(robot, fleet)
 
     def program(context: Context) -> tuple[tuple[str, str], list[str]]:
+        """Return package and executable of the spawner, and its arguments."""
         called = perform(context, simulator)
         if called not in SPAWNERS:
             raise UsageError(unknown("simulator", called, SPAWNERS))
@@ -121,6 +124,7 @@ def place(robot: Text = None, fleet: Text = None, **options: Any) -> Action:
     of = RobotRef(robot, fleet)
 
     def program(context: Context) -> tuple[tuple[str, str], list[str]]:
+        """Return package and executable of the publisher of a transform, and its arguments."""
         return PLACER, robot_of(context, of).transform_arguments
 
     return _run_program(program, of, options)
@@ -136,6 +140,7 @@ def _node(word: str, base: Any, name_in_set: Text, options: Mapping[str, Any]) -
     own, first = _split_options(word, name_in_set, options)
 
     def made(context: Context) -> later.Made:
+        """Return the node's keywords in this launch, or the actions that load it as a component."""
         called, its = perform(context, name_in_set), robot_of(context, own["of"])
         if its.table.is_controller(called):
             return _node_options(context, called, own, first)
@@ -236,6 +241,7 @@ def _run_program(
     given = {key: it for key, it in options.items() if key != SIM_TIME}
 
     def made(context: Context) -> later.Made:
+        """Return the keywords of the program's process; no action without arguments."""
         (package, executable), arguments = find(context)
         if not arguments:
             return []
@@ -269,6 +275,7 @@ def _group(context: Context, fleet: LoadedFleet, robot: LoadedRobot, make: Make)
     actions, before = of_launch("actions"), here(context)
 
     def entering(group: Here) -> Action:
+        """Return the action that sets fleet and robot from there on."""
         return actions.OpaqueFunction(function=lambda context: entered(context, group))
 
     clock = sim_time(context, robot, None)

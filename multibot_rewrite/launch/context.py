@@ -81,6 +81,8 @@ def _carry(context: Context) -> None:
 
 
 def _handler_for_group(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
+    """Return an event handler that first sets fleet and robot of ``group``."""
+
     def handled(event: Any, context: Context) -> Any:
         # launch drops the locals when it has visited what this returns.
         entered(context, group)
@@ -90,7 +92,7 @@ def _handler_for_group(handle: Callable[..., Any], group: Here) -> Callable[...,
 
 
 def _is_of_timers(handler: Any) -> bool:
-    """Return whether it is the one handler for all timers of a launch, which keep locals."""
+    """Return whether a handler is the one for all timers of a launch, which keep locals."""
     event = of_launch("events").TimerEvent(timer_action=None)
     return type(handler).__name__ == "EventHandler" and bool(handler.matches(event))
 
@@ -135,10 +137,7 @@ def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
 
 
 def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
-    """Write a file of the fleet into the folder of this launch; returns its path.
-
-    It is the robot's own file, or the one for all robots if no robot is given.
-    """
+    """Return the path of a robot's file, or without a robot of that for all, written for the launch."""
     fleet = fleet_of(context, of.fleet)
     asked = of.robot is not None or here(context)[1] or ROBOT in context.launch_configurations
     robot = robot_of(context, of) if asked else None

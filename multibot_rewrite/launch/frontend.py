@@ -31,14 +31,14 @@ Parsed = tuple[Any, dict[str, Any]]
 
 
 def words(data: Sequence[Text]) -> Parsed:
-    """Parse ``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``, see ``launch.value``."""
+    """Parse ``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``; return class and keywords."""
     if not data:
         raise ValueError(f"$(multibot) needs one of: {', '.join((*WORDS, FILE))}")
     return substitution_class(), {"words": data, "of": HERE}
 
 
 def robots(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_robots fleet= [robots=]``: children per robot, see ``launch.each_robot``."""
+    """Parse ``multibot_robots fleet= [robots=]``; return ``each_robot`` and its keywords."""
     given = {**action_options(entity, parser), **_texts(entity, parser, "fleet", "robots")}
     if "fleet" not in given:
         raise ValueError("multibot_robots: the fleet is missing; add fleet=FILE")
@@ -49,18 +49,18 @@ def robots(entity: Any, parser: Any) -> Parsed:
 
 
 def node(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_node``, with the attributes of ``node`` and the options of ``launch.node``."""
+    """Parse ``multibot_node``; return ``launch.node`` and its keywords."""
     return actions.node, _node("multibot_node", actions.node_class(), entity, parser)
 
 
 def lifecycle_node(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_lifecycle_node``: as ``multibot_node``, see ``launch.lifecycle_node``."""
+    """Parse ``multibot_lifecycle_node``; return ``launch.lifecycle_node`` and its keywords."""
     made = _node("multibot_lifecycle_node", actions.node_class(), entity, parser)
     return actions.lifecycle_node, made
 
 
 def container(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_container``: as ``multibot_node``, with components, see ``launch.container``."""
+    """Parse ``multibot_container``; return ``launch.container`` and its keywords."""
     base = of_launch_ros("actions").ComposableNodeContainer
     given = _node("multibot_container", base, entity, parser)
     inside = _nested(entity, COMPONENT)
@@ -73,18 +73,18 @@ def container(entity: Any, parser: Any) -> Parsed:
 
 
 def composable_node(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_composable_node node= pkg= plugin=``, which is loaded into its container."""
+    """Parse ``multibot_composable_node node= pkg= plugin=``; return ``launch.node`` and keywords."""
     return actions.node, {**action_options(entity, parser), **_component(entity, parser)}
 
 
 def spawn(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_spawn simulator= [robot=] [fleet=]``, see ``launch.spawn``."""
+    """Parse ``multibot_spawn simulator= [robot=] [fleet=]``; return ``launch.spawn`` and keywords."""
     simulator = parser.parse_substitution(entity.get_attr("simulator"))
     return actions.spawn, {"simulator": simulator, **_program_options(entity, parser)}
 
 
 def place(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_place [robot=] [fleet=]``, see ``launch.place``."""
+    """Parse ``multibot_place [robot=] [fleet=]``; return ``launch.place`` and its keywords."""
     return actions.place, _program_options(entity, parser)
 
 

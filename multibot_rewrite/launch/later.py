@@ -41,7 +41,7 @@ def _action_class(base: Any) -> Any:
             self.__make: Callable[[Context], Made] | None = make
 
         def resolve(self, context: Context) -> list[Action] | None:
-            """Make it the robot's; the actions that run in its place, if others do."""
+            """Fill in the robot's options; return the actions to run in its place, None for itself."""
             make, self.__make = self.__make, None
             made = make(context) if make else {}
             if isinstance(made, list):
@@ -70,10 +70,11 @@ def _component_class(base: Any) -> Any:
 
         @property
         def package(self) -> Any:
-            """Its package; launch_ros asks for it first of all that is a robot's."""
+            """The component's package; launch_ros asks for it before all else that is a robot's."""
             return [_made_text_class()(self._made)]
 
         def _made(self, context: Context) -> str:
+            """Fill in the robot's options at the first call; return the package."""
             make, self.__make = self.__make, None
             if make:
                 super().__init__(**make(context))

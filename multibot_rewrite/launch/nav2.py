@@ -154,6 +154,7 @@ def _activated(made: Action) -> Iterator[Action]:
     ids = of_launch("events").matches_action(made)
 
     def change(transition: str) -> Action:
+        """Return the action that asks the node for a transition."""
         number = TRANSITIONS[transition]
         changed = events.ChangeState(lifecycle_node_matcher=ids, transition_id=number)
         return known.EmitEvent(event=changed)

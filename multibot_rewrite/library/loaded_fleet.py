@@ -100,6 +100,7 @@ class LoadedFleet:
 
     @cached_property
     def _named_outputs(self) -> Outputs:
+        """The outputs of the build, with parameter files in the usual style."""
         if not self.plan.file.params_style:
             return self.made
         return make_outputs(self.plan._replace(file=self.plan.file._replace(params_style="")))

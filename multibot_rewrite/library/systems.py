@@ -112,9 +112,7 @@ def launched_by(
 
 
 def system_of_folder(path: Path, *, distro: str = "") -> System:
-    """Return what a folder of ``multibot build`` would start; raises InputError for another.
-
-    It is read as by ``system_of_launch``, without its plan."""
+    """Return what a built folder would start, without its plan; raises InputError for another."""
     from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 
     return system_of_launch(os.path.join(os.fspath(path), LAUNCH), distro=distro)

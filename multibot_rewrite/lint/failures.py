@@ -78,7 +78,7 @@ def _is_defined_in_package(path: str, name: str) -> bool:
 
 
 def crash(rule: Rule, subject: Subject, error: Exception) -> Finding:
-    """Return the finding for a rule that crashed: it did not check all of the document."""
+    """Return the finding for a rule that crashed, so that the document is not wholly checked."""
     file = subject.document.file.removesuffix(" (expanded)")
     hint = "this is a bug in urdf-lint; use --ignore to go on"
     return _crashed(file, f"{rule.code} crashed: {_error_text(error)}", hint)

@@ -121,7 +121,7 @@ def _meaning(element: _Element) -> Meaning:
 
 
 def _half_spheres(link: _Element) -> Iterator[Meaning]:
-    """Yield the spheres that replace the ends of a link's capsules, after all else."""
+    """Yield two spheres, as elements, for the ends of each of a link's capsules."""
     for shape, holder in capsules(link):
         pose = poses.pose_of(next(holder.iterchildren("origin"), None))
         length = number(shape.get("length"))

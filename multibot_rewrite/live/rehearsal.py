@@ -70,7 +70,7 @@ def played(
 
 
 def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> Iterator[Stub]:
-    """Yield the stub nodes with their edges, which are given by robot and node.
+    """Yield each node to be played, with the transforms it sends.
 
     Rules at one of the ways ``left_out`` are not given; without any a node gets only its namespace
     and its name."""
@@ -192,6 +192,7 @@ def with_own_types(it: System, plan: System, replaced: Mapping[str, str]) -> Sys
         types[end.node, end.kind, end.role, end.name] = end.type
 
     def own(end: End) -> End:
+        """Return the end with its planned type, if it has the substitute of that."""
         who, last = (end.node, end.kind, end.role), end.name.rpartition("/")[2]
         keys = ((*who, end.name), (end.kind, end.name), (*who, last))
         type_ = next((types[key] for key in keys if key in types), "")
@@ -230,7 +231,7 @@ def to_order(nodes: Iterable[Stub]) -> tuple[Any, ...]:
 
 
 def from_order(value: Sequence[Any]) -> Iterator[Stub]:
-    """Read what JSON made of ``to_order``."""
+    """Yield the stub nodes of an order as JSON gives it back, which ``to_order`` made."""
     for name, words, space, rules, rows, edges in value:
         ends = (
             Endpoint(*own)._replace(helper=helper, by=by, beside=beside)

@@ -35,7 +35,7 @@ HEAD = """\
 
 
 def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
-    """Return the files by name."""
+    """Return a first fleet file, and the files that it names, as texts by file name."""
     robot, *_ = robots_to_plan(seen)
     # The nodes of the first robot, as far as their names show the code's: not behind a word.
     mine, above = "" if robot is NAMELESS else robot.name, f"{robot.namespace}/"

@@ -110,7 +110,7 @@ def _new_findings(known: Iterable[Finding], found: Iterable[Finding]) -> tuple[F
 
 
 def final(state: WatchState) -> Verdict:
-    """Return the worst verdict; what is still missing at the end counts as well."""
+    """Return the worst verdict so far, the last one included."""
     return max(state.worst, state.verdict)
 
 

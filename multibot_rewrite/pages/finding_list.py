@@ -60,7 +60,7 @@ def finding_list(
 
 
 def _head(row: FindingRow, link: str) -> str:
-    """Return the line of a finding, which opens it."""
+    """Return the line of a finding, as HTML, which opens its details."""
     finding = row.finding
     level = safe(finding.level)
     who = ", ".join(finding.robots or filter(None, (finding.robot,))) or ", ".join(row.robots)
@@ -77,7 +77,7 @@ def _head(row: FindingRow, link: str) -> str:
 
 
 def _body(row: FindingRow, sources: Sources) -> str:
-    """Return where, why, and the line of the description if it is known."""
+    """Return the details of a finding as HTML: where, why, and the line of the description."""
     finding = row.finding
     rule = sources.rules.get(finding.code)
     names = ", ".join(filter(None, (finding.node, *finding.names)))

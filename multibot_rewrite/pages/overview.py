@@ -92,7 +92,7 @@ def _shared_tiles(crossings: Sequence[Crossing], shared: Sequence[str]) -> Itera
 
 
 def _grid_of(number: int) -> tuple[int, int, int, int]:
-    """Return the columns, and width, height and gap of the boxes, for a number of robots."""
+    """Return for a number of robots the columns, and width, height and gap of the boxes."""
     return next(size[1:] for size in SIZES if number <= size[0])
 
 
@@ -125,7 +125,7 @@ def _tile_svg(tile: Tile, box: _Box) -> str:
 
 
 def _arrow_path(start: _Box, end: _Box) -> tuple[str, float, float]:
-    """Return a curve from box to box and its middle; the two directions do not overlap."""
+    """Return a curve from box to box, and its middle: x, y; two directions do not overlap."""
     x, to_x = start.x + start.wide / 2 + 12, end.x + end.wide / 2 - 12
     if start.y == end.y:
         y, bend = start.y, 46 if x < to_x else 26

@@ -67,7 +67,7 @@ def rows_of(kind: str, name: str, release: str) -> tuple[BridgeRow, ...]:
 
 
 def is_there(row: BridgeRow, host: _Element) -> bool:
-    """Return whether a sensor or plugin has this topic, by its parameters."""
+    """Return whether the parameters of a sensor or plugin make it have the topic of a row."""
     there = all(next(values_at(host, it), None) is not None for it in row.needs.split())
     return there and (not row.when or holds(host, row.when))
 
@@ -94,7 +94,7 @@ def default_topics(row: BridgeRow, plugin: _Element, model: str) -> Iterator[tup
 
 
 def _values(slot: str, plugin: _Element, model: str) -> list[str]:
-    """Return the values for ``PATH``, ``PATH*``, ``PATH|model`` or ``PATH|=TEXT``."""
+    """Return the values in a plugin for ``PATH``, ``PATH*`` (all), ``PATH|model`` or ``PATH|=TEXT``."""
     for word in slot.split("|"):
         if word == MODEL:
             return [model]

@@ -88,6 +88,7 @@ def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
 
 
 def _needed_crossings(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
+    """Yield the topics that a node reads and only nodes of another domain send, and the clock."""
     robot_of = _robot_by_node(plan)
     ends: dict[tuple[str, str], dict[str, End]] = defaultdict(dict)
     for it in plan.ends:
@@ -135,7 +136,7 @@ def _requested_crossings(
 
 
 def services_apart(plan: System) -> Iterator[tuple[End, int, int]]:
-    """Yield services and actions called in one domain and served only in another, with both."""
+    """Yield (end, own domain, other domain) of services and actions called across domains."""
     numbers = domain_of(plan)
     robot_of = _robot_by_node(plan)
     served: dict[tuple[str, str], set[int]] = defaultdict(set)
@@ -150,7 +151,7 @@ def services_apart(plan: System) -> Iterator[tuple[End, int, int]]:
 
 
 def bridge_files(plan: System) -> Iterator[tuple[str, bytes]]:
-    """Yield by path the file of each robot's bridge, as the plan has it."""
+    """Yield path and bytes of the file of each robot's bridge, as the plan has it."""
     numbers = domain_of(plan)
     for robot, number in numbers.items():
         name = bridge_name(robot)

@@ -135,9 +135,7 @@ def placed(robot: str, node: str, naming: Naming, apart: bool = False) -> tuple[
 
 
 def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
-    """Yield the names that rcl sees for an endpoint, with their kinds; none for one made at run time.
-
-    An action is services and topics."""
+    """Yield (name, kind) as rcl sees an endpoint: several of an action, none if made at run time."""
     name = endpoint.name
     if "<" in name:
         return

@@ -93,7 +93,7 @@ def _contradictions(plan: System) -> Iterator[str]:
 
 
 def is_fleet(data: bytes) -> bool:
-    """Return whether this is a fleet file. Its robots are a list, or in files that it includes."""
+    """Return whether a text is a fleet file. Its robots are a list, or in files that it includes."""
     if recognised(data) == PLAN:
         return False
     found = _ROBOTS.search(data)

@@ -135,7 +135,7 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
 
 
 def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:
-    """Return by robot patterns of the nodes that its nodes make for themselves, or ``always`` make."""
+    """Return by robot the full names, as patterns, of nodes that its nodes make for themselves."""
     found: dict[str, tuple[str, ...]] = {}
     each = ((run, end) for run in table.runs for end, _ in run.names if end.by)
     for run, end in (it for it in each if not (always and it[1].when)):

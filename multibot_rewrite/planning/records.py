@@ -71,27 +71,27 @@ class Run(NamedTuple):
 
     @property
     def full_name(self) -> str:
-        """Namespace and name."""
+        """The node's namespace and name."""
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
     @property
     def code_name(self) -> str:
-        """The name in its code."""
+        """The node's name in its code."""
         return self.node.rpartition("/")[2]
 
     @property
     def other_name(self) -> str:
-        """Its name, if that is not the one in its code; otherwise empty."""
+        """The node's name, if that is not the one in its code; otherwise empty."""
         return self.name if self.name != self.code_name else ""
 
     @property
     def has_fact(self) -> bool:
-        """Return whether anything is known of what it does."""
+        """Return whether anything is known of what the node does."""
         return self.fact.is_known
 
     @property
     def is_known(self) -> bool:
-        """Return whether it is known what it does, or that it only looks on."""
+        """Return whether all that the node does is known, or that it only looks on."""
         return self.has_fact or is_viewer(self.name)
 
     def value(self, name: str) -> object:
@@ -100,7 +100,7 @@ class Run(NamedTuple):
         return given.value if given else None
 
     def is_untold(self, name: str) -> bool:
-        """Return whether only a run shows the value of a parameter, or whether it is set."""
+        """Return whether only a run shows a parameter's value, or whether it has one."""
         return name in self.untold or (ANY_NAME in self.untold and name not in self.values)
 
 

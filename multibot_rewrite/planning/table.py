@@ -223,7 +223,7 @@ def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
 
 
 def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
-    """Return the full names of a robot's nodes and of their hosts, by their names in the node set."""
+    """Return by name in the node set the full name of a robot's node, and of its host."""
     own = [it for it in nodes if not it.shared]
     found = {it.host: placed(robot, it.host, naming) for it in own if it.host}
     found |= {it.name: placed(robot, it.name, naming, it.apart) for it in own}
@@ -281,5 +281,6 @@ def _facts(node: ReadNode) -> NodeFacts:
 
 
 def _rules(node: ReadNode) -> Iterator[Rule]:
+    """Yield (left side, right side) of each remap rule of a node."""
     for rule in (it.rule for it in node.rules):
         yield f"{rule.node}:{rule.source}" if rule.node else rule.source, rule.target

@@ -70,7 +70,7 @@ def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:
 
 
 def _named_once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
-    """Return a naming that leaves frames as they are which have the robot's name already."""
+    """Return ``by_naming`` as a function that keeps a frame which has the robot's name already."""
     own = by_naming("x").removesuffix("x")
     return lambda frame: frame if own and frame.startswith(own) else by_naming(frame)
 
@@ -83,7 +83,7 @@ def tree_of(inventory: Inventory, naming: Naming, robot: str) -> Iterator[Edge]:
 
 
 def links_of(inventory: Inventory, naming: Naming, robot: str) -> list[str]:
-    """Return the links of a rewritten description as frames; those below ``<gazebo>`` are in no tf."""
+    """Return a description's links as frames on tf; those below ``<gazebo>`` are in none."""
     root = inventory.document.root
     own = [it.get("name", "") for it in root.iterfind("link")]
     links = own if root.tag == "robot" else inventory.declared["link"]
@@ -138,7 +138,7 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
 
 
 def _is_static(node: NodeFacts) -> bool:
-    """Return whether it only sends static transforms."""
+    """Return whether a node only sends static transforms."""
     sent = {it.name.strip("/") for it in node.endpoints if it.role == PUBLISHES}
     return "tf_static" in sent and "tf" not in sent
 

@@ -262,7 +262,7 @@ def useless_rules(
 
 @cache
 def _names_of_managers(release: str) -> frozenset[str]:
-    """Return the code's names of managers in all releases, and of controllers with their rules."""
+    """Return the topics in the code of controller managers and of controllers known in a release."""
     handed_on = controller_way(release).of_manager
     every = every_release().nodes.values()
     nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]

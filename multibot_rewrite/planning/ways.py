@@ -59,10 +59,7 @@ def deliveries(table: Table) -> tuple[Delivery, ...]:
 
 
 def rules_by_taker(given: Iterable[Delivery]) -> dict[Key, Rules]:
-    """Return the rules by robot and taker; those for hosted nodes name them, so they come first.
-
-    A plugin has only what is written in its description.
-    """
+    """Return the rules by robot and taker; those for hosted nodes name them, so they come first."""
     found: dict[Key, dict[Rule, None]] = {}
     for it in sorted(given, key=lambda it: it.way != HOST):
         if it.way != PLUGIN or it.node.written:
@@ -142,10 +139,7 @@ class Started(NamedTuple):
 
 
 def started(table: Table) -> Iterator[Started]:
-    """Yield what is started for the nodes of a table; a node in another's process or plugin is not.
-
-    A controller is always started by a spawner, even if that takes no rules.
-    """
+    """Yield what is started for a table's nodes, but not those in another's process or plugin."""
     given = deliveries(table)
     rules = rules_by_taker(given)
     controllers = (it.node for it in given if it.node.fact.is_controller)

@@ -60,7 +60,7 @@ def of_hardware(
 
 
 def _opened_by(system: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, str]]:
-    """Return kind, parameter and value of what a known class of hardware opens."""
+    """Yield (kind, parameter, value) of what a known class of hardware opens."""
     for kind, value, path in opened(system, section):
         if kind not in (RELATIVE, TRANSFORMS_ON):
             label = split_step(split_path(path)[0][-1])[2] or path
@@ -108,7 +108,7 @@ def _kind_of_value(text: str) -> str:
 
 
 def is_of_network(text: str) -> bool:
-    """Return whether it is the address of another computer, alone or with a port."""
+    """Return whether a text is the address of another computer, alone or with a port."""
     try:
         it = IPv4Address(text.partition(":")[0])
         return not (it.is_loopback or it.is_unspecified or text.startswith("255."))

@@ -54,7 +54,7 @@ class Robot(NamedTuple):
 
     @property
     def is_simulated(self) -> bool:
-        """Return whether it is wanted in a simulator."""
+        """Return whether the robot is wanted in a simulator."""
         return self.simulator != REAL if self.simulator else self.has_simulator
 
 
@@ -79,7 +79,7 @@ def _value_for_each(argument: str, value: str) -> str:
 
 
 def _effects(graph: LaunchGraph) -> tuple[object, ...]:
-    """Return what a launch file starts and reads, whatever it calls the robot."""
+    """Return a key that is equal for two launches: programs, files read, and how much is unclear."""
     started = sorted((it.package, it.executable) for it in graph.nodes)
     return started, _files_read(graph), len(graph.notes), len(graph.idle)
 
@@ -92,7 +92,7 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
     roots = [it for it in every if not it.why and it.file not in included]
     # Those that start the publisher or spawner of the description, as far as it is known which one that
     # is, and of one robot.
-    publishing = (it for it in roots if any(map(_is_publisher, it.graph.nodes)))
+    publishing = (it for it in roots if any(map(_publishes_or_spawns, it.graph.nodes)))
     likely = [it for it in publishing if not _is_of_another(it.graph, robot)]
     starting = [it for it in likely if _files_read(it.graph) & robot.files] or likely
     if not starting:
@@ -111,7 +111,7 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
 def processes_of_robot(it: Reading) -> int:
     """Return how many processes a launch file starts for a robot; raises nothing."""
     # Those that only show it count as one; 0 for a test, or without a description.
-    starts = starts_simulator(it.graph) or any(map(_is_publisher, it.graph.nodes))
+    starts = starts_simulator(it.graph) or any(map(_publishes_or_spawns, it.graph.nodes))
     own = {one for one in _own_nodes(it.graph) if not _shows(one)}
     own |= {one for one in it.graph.nodes if one.package in programs().simulators}
     return 1 + len(own) if starts and not _is_trial(it, True) else 0
@@ -124,10 +124,12 @@ def _with_own_arguments(
     # Their own arguments, otherwise a switch, otherwise files that these include.
 
     def starting(orders: Iterable[LaunchOrder]) -> list[Reading]:
+        """Return the launch files, with these arguments, that start the robot and can be read."""
         read = read_as(it._replace(trusted=trust) for it in orders)
         return [it for it in read if not it.why and _is_bringup(it.graph, robot)]
 
     def fits(read: Iterable[Reading]) -> bool:
+        """Return whether one starts a simulator exactly if the robot is wanted in one."""
         return any(starts_simulator(it.graph) == robot.is_simulated for it in read)
 
     found = starting(LaunchOrder(it.file) for it in likely)
@@ -208,7 +210,7 @@ def _only_launch_file(roots: Sequence[Reading], robot: Robot, trust: bool) -> Br
     return Bringup(read.order, read.graph, simulated) if nodes else None
 
 
-def _is_publisher(it: LaunchedNode) -> bool:
+def _publishes_or_spawns(it: LaunchedNode) -> bool:
     return _is_called(it, "publishers") or f"{it.package}/{it.executable}" in programs().spawners
 
 

@@ -65,7 +65,7 @@ class Chosen(NamedTuple):
 
 
 def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
-    """Return the descriptions, the likeliest to be the robot first; a house or a shelf is none."""
+    """Return the descriptions, likeliest robot first, those that may be meant, and its other files."""
     said = names_of_files(found)
     used = {
         it.path for it in robots if any(_depends_on(one, it) for one in robots if one.links > 1)
@@ -91,7 +91,7 @@ def may_be_partners(path: str, found: Found) -> Iterator[str]:
 
 
 def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
-    """Return that of another kind with most links in common, at least half of them."""
+    """Return the description of the other kind that shares most links, at least half of its own."""
     own = _bare_links(it)
     shared = {id(one): len(own & _bare_links(one)) for one in others}
     fits = [one for one in others if one.tag != it.tag and 2 * shared[id(one)] >= one.links > 0]
@@ -99,12 +99,12 @@ def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
 
 
 def _bare_links(it: Looked) -> set[str]:
-    """Return its links without what a xacro puts in front for a robot."""
+    """Return a description's links without what a xacro puts in front for a robot."""
     return {name.rpartition("/")[2] for name in _link_names(it)}
 
 
 def is_model(path: str) -> bool:
-    """Return whether it is an SDF, or a xacro of one. Gazebo Classic's may end with .model."""
+    """Return whether a path is that of an SDF or of its xacro (.model for Gazebo Classic)."""
     return ".sdf" in os.path.basename(path) or path.endswith(".model")
 
 
@@ -159,6 +159,7 @@ def _sort_key(it: Candidate) -> tuple[object, ...]:
 
 
 def _is_behind(it: Candidate, best: Candidate) -> bool:
+    """Return whether a candidate is clearly less likely to be the robot than the best one."""
     if it.kind != best.kind or (it.moving < best.moving and not it.started):
         return True
     if it.started < best.started or it.of_package < best.of_package:
@@ -190,7 +191,7 @@ def launched_descriptions(found: Found) -> list[str]:
 
 
 def loaded(found: Found) -> list[tuple[Reading, Mapping[str, str]]]:
-    """Return the launch files, each with the descriptions that it loads, by their real paths."""
+    """Return pairs: each launch file, and the descriptions that it loads, by their real paths."""
     return once_kept(
         ("loaded", found), lambda: [(it, loaded_by(it.graph, found)) for it in found.read]
     )

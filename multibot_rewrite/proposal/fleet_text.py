@@ -99,7 +99,7 @@ def _capped(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _unused_files(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
-    """Yield refused, unreadable and unused files, each with the reason."""
+    """Yield (path, reason) for each refused, unreadable or unused file."""
     for path, why in {**it.refused, **it.broken}.items():
         yield os.path.relpath(path, folder), why
     taken = {
@@ -132,7 +132,7 @@ def _one_line(value: Any) -> str:
 def _member_keys(
     member: Member, folder: str, layout: str
 ) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
-    """Yield the keys of a description and its files, each with the reasons."""
+    """Yield the keys of a description and its files: key, its value, and the reasons for that."""
 
     def here(path: str) -> str:
         return os.path.relpath(path, folder)
@@ -195,6 +195,7 @@ def _launch_comments(it: Bringup, apart: str) -> Iterator[str]:
 
 
 def _first_rows(rows: Iterable[str]) -> Iterator[str]:
+    """Yield the first rows, indented and each once, and how many more there are."""
     every = [*dict.fromkeys(rows)]
     yield from (f"  {row}" for row in every[:MOST])
     if every[MOST:]:

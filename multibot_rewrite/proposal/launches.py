@@ -158,7 +158,7 @@ def starts_simulator(graph: LaunchGraph) -> bool:
 
 
 def is_of_robot(it: LaunchedNode) -> bool:
-    """Return whether it is a process of a robot: no simulator, no program that ends or only looks."""
+    """Return whether a process is a robot's: no simulator, no program that ends or only looks."""
     ways = programs()
     passes = f"{it.package}/{it.executable}" in ways.passing or it.package in ways.simulators
     return not passes and not is_viewer(it.executable)

@@ -83,7 +83,7 @@ class Looked(NamedTuple):
 
 
 def filled_for_any(it: Looked) -> tuple[tuple[str, str], ...]:
-    """Return its arguments as they are for one robot; raises nothing."""
+    """Return names and values of a description's xacro arguments, as they are for one robot."""
     return tuple(filled(dict(it.arguments), ANY).items())
 
 
@@ -199,6 +199,7 @@ def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
     """Return the description with the argument that makes it simulated, or real, if it has one."""
 
     def suits_its_simulator(root: etree._Element) -> bool:
+        """Return whether a description is for a simulator, and loads what that one needs."""
         return _simulator_of(root) != NO_SIMULATOR and suits_simulator(root)
 
     return _with_switch(it, suits_its_simulator if simulated else suits_real, reach)
@@ -210,6 +211,7 @@ def with_hardware_loaded(it: Looked, reach: Reach) -> Looked:
 
 
 def _with_switch(it: Looked, suits: Suits, reach: Reach) -> Looked:
+    """Return the description with the argument, if there is one, that makes it ``suits``."""
     given = dict(it.arguments)
     if it.model:
         return it
@@ -297,7 +299,7 @@ def _simulator_of(root: etree._Element) -> str:
 
 
 def holds_the_world(it: Looked) -> bool:
-    """Return whether the robot is fixed to the world by its own description."""
+    """Return whether a robot is fixed to the world by its own description."""
     links = it.root.iterfind("link") if it.root is not None else ()
     return any(link.get("name") == WORLD for link in links)
 

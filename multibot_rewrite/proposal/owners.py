@@ -108,7 +108,7 @@ def _shared_depth(folder: str, file: str) -> int:
 
 
 def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
-    """Yield files of the description's package that are nearer to another description."""
+    """Yield (path, reason) for files of the package that are nearer to another description."""
     # A folder of examples has files of several robots.
     others = {os.path.dirname(it): it for it in reversed(found.every)}
     own, base = os.path.dirname(robot), home_of(robot)
@@ -120,7 +120,7 @@ def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
 
 
 def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield files that name parts of another description and are not nearer to the robot."""
+    """Yield (path, reason) for files that name parts of another description, no nearer to the robot."""
     own = frozenset(_expanded_names(robot)) | _names_in(robot.path)
     names = {it: _names_in(it) for it in found.every[:MOST] if it != robot.path}
     others = {path: its for path, its in names.items() if not its <= own}
@@ -166,7 +166,7 @@ def hundredths_known(robot: Looked, path: str) -> int:
 
 
 def own_names(robot: Looked) -> frozenset[str]:
-    """Return its links and joints: as they are, without what its arguments put in front, as written."""
+    """Return a robot's links and joints: as they are, without what arguments add, and as written."""
     made = frozenset(_expanded_names(robot))
     return made | _without_prefixes(robot, made) | _names_in(robot.path)
 
@@ -194,6 +194,7 @@ def semantic_names(robot: Looked, path: str) -> tuple[frozenset[str], frozenset[
 def _expanded_srdf(
     path: str, given: tuple[tuple[str, str], ...]
 ) -> tuple[frozenset[str], frozenset[str]]:
+    """Return the links and joints that an expanded SRDF names, and its groups."""
     data = expand(path, dict(given), None, BOUNDED)
     found = (it.decode("utf-8", "replace") for it in _NAMED.findall(data))
     groups = (it.decode("utf-8", "replace") for it in _GROUP.findall(data))
@@ -201,7 +202,7 @@ def _expanded_srdf(
 
 
 def best_folders(robot: Looked, srdf: str, paths: Iterable[str]) -> dict[str, int]:
-    """Return how many names of the robot and groups of its SRDF the files of each folder have."""
+    """Return by folder how many names of the robot and groups of its SRDF its files have."""
     groups = semantic_names(robot, srdf)[1]
     own = own_names(robot) | groups
     found: dict[str, int] = {}
@@ -237,6 +238,7 @@ def names_of_files(found: Found) -> frozenset[str]:
 
 
 def _words_in(path: str) -> _Words:
+    """Return all words of a file, and those of its values."""
     data = data_of_file(path)
     texts = data, _KEY.sub(b"", data)
     found = (frozenset(_WORD.findall(it.decode("utf-8", "replace"))) for it in texts)
@@ -244,7 +246,7 @@ def _words_in(path: str) -> _Words:
 
 
 def moveit_of_others(robot: Looked, srdf: str, found: Found) -> Mapping[str, str]:
-    """Return MoveIt files that are nearer to another SRDF, or for groups that this one lacks."""
+    """Return the reason by path of each MoveIt file for another SRDF, or for groups unknown here."""
     left = {}
     groups = semantic_names(robot, srdf)[1]
     for file in found.moveit:
@@ -294,7 +296,7 @@ def not_started(path: str, nodes: Sequence[Run], known: KnownNodes) -> str:
 
 
 def _named_in_values(nodes: Iterable[Run], known: KnownNodes) -> Iterator[tuple[str, str]]:
-    """Yield the names in values of known parameters, each with its kind."""
+    """Yield (kind, name) for each name in a value of a known parameter."""
     for node in (it for it in nodes if it.fact.known in known.nodes):
         params = [*known.nodes[node.fact.known].params.values()]
         for name, given in node.values.items():

@@ -152,7 +152,7 @@ def simulator_of(members: Sequence[Member]) -> Choice:
 
 
 def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
-    """Return a shared frame for real robots whose descriptions are fixed to the world."""
+    """Return ``shared_frames``, chosen for real robots whose descriptions are fixed to the world."""
     # Each has its own world, at its pose in the map; a simulator needs one world.
     if not is_real or not any(holds_the_world(it.looked) for it in members):
         return {}
@@ -161,7 +161,7 @@ def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
 
 
 def poses_of(members: Sequence[Member], apart: float) -> Mapping[str, Mapping[str, float]]:
-    """Return a pose for each robot, in a row along y, ``apart`` in metres; 0: by their widths."""
+    """Return x, y and so on of each robot's pose, in a row ``apart`` metres; 0: by their widths."""
     # None for a real robot whose description has its place in the map.
     found: dict[str, dict[str, float]] = {}
     y = before = 0.0

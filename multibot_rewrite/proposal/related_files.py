@@ -220,6 +220,7 @@ def _nearest_first(robot: Looked, paths: Sequence[str]) -> list[str]:
     loaded = set(_loaded_files(robot))
 
     def distance(path: str) -> tuple[bool, bool, int, int, str]:
+        """Return the sort key of a path: loaded, in the package, alike in name."""
         like = len(words & set(_WORD.findall(path.lower())))
         first = os.path.abspath(path) not in loaded
         more = len(set(_WORD.findall(path.lower())) - words)
@@ -235,7 +236,7 @@ def _loaded_files(robot: Looked) -> Iterator[str]:
 
 
 def _node_sets(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tuple[str, str]]:
-    """Yield the node sets that a robot runs, each with the reason."""
+    """Yield (node set, reason) for each node set that a robot runs."""
     bare = {name.rpartition("/")[2]: path for name, path in nodes.items()}
     for node_set, with_, lacking in known_names()["node_sets"]:
         if set(with_) <= bare.keys() and not set(lacking) & bare.keys():
@@ -265,6 +266,7 @@ def related_files_launched(
     words = "\n".join((*(word for it in graph.nodes for word in it.arguments), *graph.texts))
 
     def is_read(path: str) -> bool:
+        """Return whether the launch file gives this file to a node, or the user named it."""
         return path in found.meant or os.path.realpath(path) in words
 
     files = {kind: [*filter(is_read, getattr(found, kind))] for kind in _NAMED}

@@ -146,7 +146,7 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
 
 
 def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
-    """Return the paths of descriptions that a launch file reads, gives or puts in a world."""
+    """Return by real path the descriptions that a launch file reads, gives or puts in a world."""
     # By real path; the path is as the search found it, otherwise relative.
     known = {os.path.realpath(it): it for it in found.every}
     ends = tuple(known_names()["ends"])
@@ -194,7 +194,7 @@ def home_of(file: str) -> str:
 
 
 def is_below(path: str, folder: str) -> bool:
-    """Return whether it is in the folder, however both are written."""
+    """Return whether a path is in the folder, however both are written."""
     above = os.path.join(os.path.abspath(folder), "")
     return os.path.abspath(path).startswith(above)
 
@@ -306,6 +306,7 @@ def _kind_of_xacro(stem: str, data: bytes) -> str:
 
 
 def _kind_of_yaml(stem: str, data: bytes) -> str:
+    """Return the kind of a YAML file: params, bridge or moveit; empty for none."""
     if b"ros__parameters" in data:
         return "params"
     if _BRIDGE.search(data) and _is_list(data):

@@ -115,6 +115,7 @@ def see(wanted: Wanted) -> Seen:
 
 
 def _looked_at(wanted: Wanted, found: Found) -> Seen:
+    """Return the descriptions as read: those named, or all of a folder, and which are robots."""
     reach = Reach(trust=wanted.trust)
     values = NeededValues(found.read, found.launch)
     look_at = partial(look, given=wanted.arguments, reach=reach, values=values)
@@ -137,7 +138,7 @@ def _looked_at(wanted: Wanted, found: Found) -> Seen:
     launched = look_at_all(launched_descriptions(found))
     if found.named and not launched:
         _refuse_to_guess(found)
-    if not any(it.fault or _is_robot(it) for it in launched):
+    if not any(it.fault or _is_like_a_robot(it) for it in launched):
         return _likeliest(wanted, found, look_at_all(found.descriptions))
     # Those that no launch file loads are not looked at then.
     known = {it.path for it in launched}
@@ -155,7 +156,7 @@ def _refuse_to_guess(found: Found) -> None:
         raise UsageError(f"{where}: {what}; {other}")
 
 
-def _is_robot(it: Looked) -> bool:
+def _is_like_a_robot(it: Looked) -> bool:
     return it.links > 0 and acts(it)
 
 
@@ -163,7 +164,7 @@ def _likeliest(
     wanted: Wanted, found: Found, looked: Sequence[Looked], rest: Sequence[str] = ()
 ) -> Seen:
     """Return the robots of a folder, the likeliest first; no launch file loads the ``rest``."""
-    usable = [*filter(_is_robot, looked)]
+    usable = [*filter(_is_like_a_robot, looked)]
     if not usable:
         others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
         _refuse_robots(_by_launches(looked, found), _other_one(rest[0], found) if rest else others)

@@ -95,7 +95,7 @@ def that_builds(
 def _in_another_world(
     made: Proposal, own: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
 ) -> Iterator[tuple[Proposal, str]]:
-    """Yield the proposal with robots real, or hardware loaded, each with what it is."""
+    """Yield (proposal, how it differs): robots real, or hardware loaded."""
     # Real are those that no simulator can run; a simulator that was asked for stays.
     if wanted.simulator or made.keys["simulator"].value == REAL:
         return
@@ -125,7 +125,7 @@ def _can_be_simulated(it: Looked) -> bool:
 def _without_blamed(
     own: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
 ) -> tuple[Proposal, list[tuple[str, str]]]:
-    """Return the proposal without the files that have an error, and the errors that are left."""
+    """Return the proposal without faulty files, and the (file, message) pairs that are left."""
     out = dict(refused)
     for _ in range(MOST_ROUNDS):
         made = propose(own, found, wanted, out)
@@ -143,7 +143,7 @@ def _fleet_text(it: Proposal, wanted: Wanted) -> FleetText:
 
 
 def _faulty_files(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-    """Yield the related files that have one of the errors, with it."""
+    """Yield (path, message) for each related file that has one of the errors."""
     paths = (path for member in it.members for path in member.related_files.paths)
     files = {os.path.abspath(path): path for path in paths}
     for file, line in errors:
@@ -156,7 +156,7 @@ def _faulty_files(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[t
 def errors_of(
     source: FleetSource, trust: bool = False, of_sources: bool = False
 ) -> list[tuple[str, str]]:
-    """Return why a fleet does not build, each with its file or empty."""
+    """Return (file or "", message) pairs: why a fleet does not build."""
     # It is read back as a build does; faults ``of_sources`` are in any layout.
     try:
         plan, found, back = once_kept((source, trust), lambda: _build_results(source, trust))

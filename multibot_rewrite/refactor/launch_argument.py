@@ -99,7 +99,7 @@ def _xml_edit(
     commands = list(_COMMAND.finditer(source))
     root = _ROOT.search(source)
     if not commands or not root or b'<arg name="%s"' % argument.encode() in source:
-        return LaunchEdit(None, (_left_to_author(path, source),))
+        return LaunchEdit(None, (_left_to_do_by_hand(path, source),))
     given = "".join(f" {it}:=$(var {it})" for it in of_xacro).encode()
     edits = [SourceEdit(path, it.start(2), it.start(2), given) for it in commands]
     declared = "".join(f'\n  <arg name="{it}" default=""/>' for it in every).encode()
@@ -151,7 +151,7 @@ def _python_edit(
     commands = [it for it in called if _XACRO.search(ast.unparse(it.elts[0]))]
     actions = next(_lists_of(tree, "LaunchDescription"), None)
     if not commands or actions is None or not actions.elts:
-        return LaunchEdit(None, (_left_to_author(path, source),))
+        return LaunchEdit(None, (_left_to_do_by_hand(path, source),))
     given = "".join(f', " {name}:=", LaunchConfiguration("{name}")' for name in of_xacro)
     edits = [it.insert(it.end(words.elts[-1]), given) for words in commands]
     # Each argument is declared before the first action, as far from the next as that is.
@@ -199,12 +199,12 @@ def _parameter_items(tree: ast.Module, file: str) -> Iterator[ast.expr]:
         it.targets[0].id: it.value
         for it in values
         if isinstance(it.targets[0], ast.Name)
-        and _names_the_file(it.value, file)
+        and _has_file_name(it.value, file)
         and inside.isdisjoint(ast.walk(it.value))
     }
-    found = [it for it in items if _names_the_file(it, file)]
+    found = [it for it in items if _has_file_name(it, file)]
     found += [it for it in items if isinstance(it, ast.Name) and it.id in named]
-    direct = sum(_names_the_file(it, file) for it in (*items, *named.values()))
+    direct = sum(_has_file_name(it, file) for it in (*items, *named.values()))
     uses = [it for it in ast.walk(tree) if isinstance(it, ast.Name) and it.id in named]
     loads = sum(isinstance(it.ctx, ast.Load) for it in uses)
     by_name = sum(isinstance(it, ast.Name) for it in found)
@@ -213,7 +213,7 @@ def _parameter_items(tree: ast.Module, file: str) -> Iterator[ast.expr]:
         yield from found
 
 
-def _names_the_file(expression: ast.expr, file: str) -> bool:
+def _has_file_name(expression: ast.expr, file: str) -> bool:
     return any(_names_file(it, file) for it in ast.walk(expression))
 
 
@@ -249,6 +249,6 @@ def _called_name(node: ast.Call) -> str:
     return named if isinstance(named, str) else getattr(named, "id", "")
 
 
-def _left_to_author(path: str, source: bytes) -> Left:
+def _left_to_do_by_hand(path: str, source: bytes) -> Left:
     line = locate(source, max(source.find(b"xacro"), 0))[0]
     return Left(f"{path}:{line}", "give its xacro the argument by hand")

@@ -246,7 +246,7 @@ def fillable(
 
 
 def starts_of(file: NamedFile, names: Collection[str], kinds: Collection[str]) -> Iterator[int]:
-    """Return where in the text of a file names of these kinds begin."""
+    """Yield the offsets in a file's text at which names of these kinds begin."""
     for site in file.names:
         if site.text in names and not {site.kind, *KINDS.get(site.kind, ())}.isdisjoint(kinds):
             start = file.text.find(site.text, site.slot.start + site.at, site.slot.end)

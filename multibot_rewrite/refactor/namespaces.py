@@ -90,7 +90,7 @@ def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: T
 
 
 def _spaced_urdfs(found: Iterable[Description], tree: Tree) -> tuple[list[Spaced], list[Left]]:
-    """Return each URDF for the rewrite, and those that it refuses."""
+    """Return each URDF prepared for a namespace, and those that the rewrite refuses."""
     every: list[Spaced] = []
     left: list[Left] = []
     for it in found:
@@ -116,7 +116,7 @@ def space_verified(
     how: Expanding,
     tree: Tree,
 ) -> tuple[tuple[str, ...], tuple[Left, ...]]:
-    """Return the paths of verified descriptions, and what is wrong with the others."""
+    """Return the paths of verified descriptions, and for the others what is wrong with them."""
     # With a namespace they are what a rewrite makes of them, also with a ``prefix``, which is
     # ``tried`` with the default arguments.
     wrong: dict[str, Left] = {}
@@ -171,7 +171,7 @@ def _readable_elements(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str
 
 
 def _namespace_edits(template: Template) -> Iterator[ValueEdit]:
-    """Return where the namespace goes in existing values."""
+    """Yield the changes of existing values that put the namespace into them."""
     document, claims, *_ = template.inventory
     for claim, spelling in zip(claims, template.plan.renames.values, strict=True):
         for *_, (at, before, after) in spelling if claim.value else ():
@@ -179,7 +179,7 @@ def _namespace_edits(template: Template) -> Iterator[ValueEdit]:
 
 
 def _conditional_namespace(change: ValueEdit, argument: str) -> bytes:
-    """Return an expression that is empty without a namespace."""
+    """Return ``${...}`` with the new name of a change, which is empty without a namespace."""
     before, after = change.new.split(TRIED_SPACE)
     words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)
     test = f"{argument} and " if len(words) > 1 else ""

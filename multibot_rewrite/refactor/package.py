@@ -45,7 +45,7 @@ class Description(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Its path with its arguments, for messages."""
+        """The description's path with its arguments, for messages."""
         return " ".join((self.path, *(f"{name}:={it}" for name, it in self.arguments.items())))
 
     @property
@@ -158,7 +158,7 @@ def configurations(
 def _other_values(
     sources: Mapping[str, bytes], given: Mapping[str, str]
 ) -> Iterator[tuple[str, str]]:
-    """Yield arguments that are not given, with values that they do not have by default."""
+    """Yield (argument, value) that is neither given nor the default."""
     roots = [read_document(data, it).root for it, data in sources.items() if b"<robot" in data]
     elements = [it for root in roots for it in root.iter("*")]
     others = list(_aliases(elements))
@@ -182,7 +182,7 @@ def _other_values(
 
 
 def _aliases(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
-    """Yield a name, and another one under which its value is known."""
+    """Yield (name, other name): a value is only the second one, as in ``${arm_prefix}``."""
     for element in elements:
         is_property = str(element.tag).endswith("xacro}property")
         for key, value in element.items():
@@ -191,7 +191,7 @@ def _aliases(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
 
 
 def _compared_words(text: str) -> Iterator[tuple[str, str]]:
-    """Yield names with the values that an expression compares them with."""
+    """Yield (name, value) for each comparison in an expression, as of ``sim == 'gz'``."""
     for it in _COMPARED.finditer(text):
         yield from ((it[1], word[1]) for word in _WORD.finditer(it[2] or it[3]))
     yield from ((it[2], it[1][1:-1]) for it in _BEHIND.finditer(text))

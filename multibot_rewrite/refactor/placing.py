@@ -111,7 +111,7 @@ def _with_real_path(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
 
 
 def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
-    """Yield the attributes of an element, and its text under the name "" if it has nothing else."""
+    """Yield (attribute, value) of an element, and its text under the name "" if it has nothing else."""
     yield from ((str(name), str(value)) for name, value in element.attrib.items())
     if element.text and not len(element):
         yield "", element.text
@@ -138,6 +138,7 @@ def _spot_of_use(
 
 
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
+    """Return start and end of an attribute's value, or of an element's text; None without one."""
     if attribute:
         return attribute_slots(source, start).get(attribute.encode())
     begin = tag_end(source, start)
@@ -147,7 +148,7 @@ def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
 def _spot_of_copy(
     read: Expansion, pieces: Sequence[tuple[int, Piece]], at: int
 ) -> tuple[Spot | None, frozenset[Spot]]:
-    """Return where the piece at ``at`` is copied from, if in no expression; and the other pieces."""
+    """Return the spot that the piece at ``at`` is copied from, None if in an expression; the others."""
     spots = {(it.file, it.start): last for last, it in pieces if it.kind not in (EXPRESSION, GIVEN)}
     for last, it in pieces:
         spot = it.file, it.start

@@ -86,7 +86,7 @@ class _Symbol(NamedTuple):
 
     @property
     def naming(self) -> Naming:
-        """Puts a mark in front of this name and changes nothing else."""
+        """The naming that puts a mark in front of this name and changes nothing else."""
         own = {(kind, self.old): Affix(0, "", "") for kind in KINDS[self.kind]}
         return make_naming()._replace(separators={}, own=own)
 
@@ -187,6 +187,7 @@ def _name_edits(it: Description, symbol: _Symbol) -> Iterator[ValueEdit]:
 
 
 def _to_edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceEdit]:
+    """Yield the edits of sources that make the changes; raises InputError where none can."""
     document = it.inventory.document
     for change in changes:
         found = _edit_of(it, change)
@@ -215,7 +216,7 @@ def _changed_related_files(
     changes: Mapping[str, Sequence[ValueEdit]],
     after: Mapping[str, bytes],
 ) -> Iterator[tuple[str, tuple[bytes, int]]]:
-    """Yield the related files that change, with their bytes and in how many places."""
+    """Yield (path, (new bytes, number of places)) for each related file that changes."""
     kinds = KINDS[symbol.kind]
     for path, data, file, starts in _files_with(symbol.old, kinds, package, changes):
         if os.path.realpath(path) not in after:
@@ -229,7 +230,7 @@ def _files_with(
     package: Package,
     changes: Mapping[str, Sequence[ValueEdit]],
 ) -> Iterator[tuple[str, bytes, NamedFile, set[int]]]:
-    """Yield the related files that have a name of these kinds, and where in their text."""
+    """Yield path, bytes, names and offsets for each related file that has a name of these kinds."""
     urdf = next(path for path, found in changes.items() if found)
     described = next(it.inventory.document.source for it in package.descriptions if it.path == urdf)
     for path, data, file in _related_files(package, described, name):

@@ -75,7 +75,7 @@ def source_edit(read: Expansion, document: Document, change: ValueEdit) -> Sourc
 
 
 def _changed_part(change: ValueEdit) -> tuple[int, int, str]:
-    """Return what of a change is different: from, to, and the new characters."""
+    """Return what of a change is different: start, end, and the new characters."""
     _, _, value, start, end, new = change
     while start < end and new and value[start] == new[0]:
         start, new = start + 1, new[1:]
@@ -87,6 +87,7 @@ def _changed_part(change: ValueEdit) -> tuple[int, int, str]:
 def _place_of_change(
     read: Expansion, document: Document, change: ValueEdit, touched: list[Piece]
 ) -> str:
+    """Return ``file:line:column`` of a change's first source, or what is known of its place."""
     if known := next((it for it in touched if it.file in read.sources), None):
         return place(known.file, read.sources[known.file], known.start)
     return place_of(read, change.element) or document.file
@@ -122,7 +123,7 @@ def expected(document: Document, changes: Iterable[ValueEdit]) -> bytes | None:
 def spans(
     document: Document, changes: Iterable[ValueEdit]
 ) -> Iterator[tuple[int, int, bytes] | None]:
-    """Return where in a document's bytes each change is, and its new bytes; None if hidden."""
+    """Yield (start, end, new bytes) for each change in a document; None for one that is hidden."""
     for element, attribute, value, start, end, new in changes:
         slot = value_slot(document.source, document.starts[element], attribute, value)
         begin, last = (slot and place_in(document.source, slot, value, at) for at in (start, end))

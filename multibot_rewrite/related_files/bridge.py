@@ -94,7 +94,7 @@ def text_in(row: Row, key: str) -> str:
 
 
 def faults(node: yaml.Node) -> Iterator[RowFault]:
-    """Yield why the bridge does not load an entry; nothing if it does."""
+    """Yield for an entry each reason why the bridge does not load it."""
     row = row_of(node)
     if not row:
         yield RowFault(node, f"the row is not a map of keys and values: {_OUT}", "")
@@ -121,7 +121,7 @@ def below(name: str, above: str) -> str:
 
 
 def models(document: YamlText) -> Iterator[tuple[yaml.Node, str]]:
-    """Yield each entry that is for a model, with the model."""
+    """Yield (entry, model) for each entry that is for a model."""
     for node in items(document.root):
         for key in (BOTH, GZ):
             found = GZ_MODEL.fullmatch(text_in(row_of(node), key))
@@ -279,6 +279,7 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
         return name
 
     def part(found: re.Match[str]) -> str:
+        """Return a matched ``kind/name`` of a topic with the robot's name of that."""
         kind, name = found.groups()
         known = is_declared(context.names, kind, name)
         return f"{kind}/{spell(context.names, kind, name) if known else name}"

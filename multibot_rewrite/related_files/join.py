@@ -155,9 +155,7 @@ def _with_related_files(
 
 @checked
 def split(source: Source, *, definitions: Iterable[str] = (), distro: str = "") -> dict[str, bytes]:
-    """Return the parts that ``join`` joined, by name; raises InputError for another text.
-
-    It also does so if the text was edited so that a part cannot be recognised."""
+    """Return the parts that ``join`` joined, by name; raises InputError for another or edited text."""
     read_in = read_whole(source, {})
     tree = builtin_tree(tuple(definitions), release_here(distro))
     return split_text(read_in.data, read_in.file, tree)

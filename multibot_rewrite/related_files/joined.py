@@ -161,7 +161,7 @@ def joined_files(files: Sequence[PartFile]) -> JoinedFile:
 
 
 def added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[str]:
-    """Add parameters, lists behind each other; tells those with two values."""
+    """Add parameters, lists behind each other; yields a text for each that has two values."""
     known: Mapping[str, yaml.Node] = {key.value: it for key, it in pairs(into)}
     for key, further in pairs(more):
         first = known.get(key.value)
@@ -299,7 +299,7 @@ def joined_rviz(parts: Sequence[PartRviz]) -> JoinedFile:
 
 
 def _shows(one: RvizItem) -> tuple[str, ...]:
-    """Return the class and topics of a display, or the frame of a grid."""
+    """Return a key equal for alike items: class and topics of a display, or frame of a grid."""
     named = (it for it in one.places if it.kind in (TOPIC, GRAPH_NAMESPACE))
     frame = value(one.node, "Reference Frame")
     return (

@@ -97,7 +97,7 @@ def _decoded_text(data: bytes, file: str) -> str:
 
 
 def _assignments(tokens: Sequence[Token]) -> Iterator[tuple[str, Token, Token | None]]:
-    """Yield the names that are assigned to, where, and the value; None for no plain one."""
+    """Yield (name, place, value) of each assignment; the value is None unless it is plain."""
     for at, token in enumerate(tokens):
         name, behind = _assigned_name(tokens, at)
         if name and behind < len(tokens):
@@ -122,7 +122,7 @@ def tokens_of(text: str, file: str) -> Iterator[Token]:
 
 
 def _assigned_name(tokens: Sequence[Token], at: int) -> tuple[str, int]:
-    """Return the name assigned to at a token, ``name =`` or ``["name"] =``, and its value's index."""
+    """Return the name assigned to at a token, ``name =`` or ``["name"] =``; index of the value."""
     token, texts = tokens[at], [it.text for it in tokens[at + 1 : at + 3]]
     if token.kind == "name" and texts[:1] == ["="]:
         return token.text, at + 2

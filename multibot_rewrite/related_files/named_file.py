@@ -30,7 +30,7 @@ def has_related_name(path: str) -> bool:
 
 
 def is_related_file(source: object) -> bool:
-    """Return whether it is the path or the text (a tree in XML) of such a file, not a description."""
+    """Return whether a source is a related file's path or text (a tree in XML), no description's."""
     if isinstance(source, bytes):
         start = source.lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
         return bool(_IS_TREE.search(source)) if start == b"<" else True

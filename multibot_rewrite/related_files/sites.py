@@ -33,7 +33,7 @@ class Slot(NamedTuple):
 
     @property
     def is_block(self) -> bool:
-        """Return whether it is a block of several lines, where no name can be. Raises nothing."""
+        """Return whether a slot is a block of several lines, where no name can be. Raises nothing."""
         return self.style in ("|", ">")
 
 

@@ -43,7 +43,7 @@ class Splice(NamedTuple):
 
 
 def read_yaml(data: bytes, file: str) -> YamlText:
-    """Parse one document; raises InputError with place, cause and remedy."""
+    """Return the one document of a text; raises InputError with place, cause and remedy."""
     if len(data) > MAX_BYTES:
         raise InputError(f"{file}: {len(data):,} bytes, over the limit of {MAX_BYTES:,}; split it")
     try:
@@ -57,7 +57,7 @@ def read_yaml(data: bytes, file: str) -> YamlText:
 
 
 def anchors(document: YamlText) -> Iterator[tuple[int, str]]:
-    """Yield line and text of anchors and aliases, which rcl_yaml_param_parser rejects."""
+    """Yield (line, text) of anchors and aliases, which rcl_yaml_param_parser rejects."""
     if not _ANCHOR.search(document.text):
         return
     for token in yaml.scan(document.text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
@@ -79,7 +79,7 @@ def refused(document: YamlText, node: yaml.Node, what: str, cause: str = "") -> 
 
 
 def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
-    """Return keys and values of a mapping, repeated keys included; empty for any other node."""
+    """Return (key, value) of a mapping, repeated keys included; empty for any other node."""
     if not isinstance(node, yaml.MappingNode):
         return []
     return [(key, value) for key, value in node.value if isinstance(key, yaml.ScalarNode)]
@@ -123,10 +123,7 @@ def found_at(document: YamlText, node: yaml.Node, rule: Rule, message: str, hint
 
 
 def replaced(node: yaml.ScalarNode, new: str) -> Splice:
-    """Return the splice that gives a scalar another value, with the quotes it had or now needs.
-
-    Raises ValueError for a block scalar, which spans several lines.
-    """
+    """Return the splice of a scalar's new value, quoted as needed; raises ValueError for a block."""
     if node.style in ("|", ">"):
         raise ValueError("a block scalar is not one name")
     return Splice(node.start_mark.index, node.end_mark.index, quoted(new, node.style or ""))
@@ -173,7 +170,7 @@ class Block(NamedTuple):
 
 
 def is_block(node: yaml.Node | None) -> bool:
-    """Return whether it is a list or map in block style, without brackets or braces."""
+    """Return whether a node is a list or map in block style, without brackets or braces."""
     return isinstance(node, yaml.CollectionNode) and not node.flow_style
 
 

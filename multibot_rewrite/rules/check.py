@@ -69,7 +69,7 @@ def judge(seen: Index) -> list[Finding]:
 
 
 def _rules(planned: bool) -> Iterator[Rule]:
-    """Return the rules that only a plan can answer, or the others."""
+    """Yield the rules that only a plan can answer, or the others."""
     return (it for it in RULES.values() if it.options["planned"] is planned)
 
 

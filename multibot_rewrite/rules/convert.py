@@ -204,7 +204,7 @@ def ends_of(pose: poses.Pose, length: float) -> tuple[Vector, Vector]:
 
 
 def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) -> bool:
-    """Return whether it is a shape and nothing else: nobody may use this collision's name."""
+    """Return whether a capsule's holder is a shape and nothing else, so that it can be replaced."""
     asked = f"{link.get('name')}_collision".encode() in text.source or holder.get("name")
     if holder.tag == "collision" and asked:
         return False

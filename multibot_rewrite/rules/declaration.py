@@ -91,7 +91,7 @@ def planned_rule(
 def launch_rule(
     code: str, name: str, *, level: str = ERROR, **options: object
 ) -> Callable[[_Check], Rule]:
-    """Make a function a rule about what a launch starts: it gets a ``Launched`` and yields findings."""
+    """Return a decorator that makes a function a rule about a ``Launched``; it yields findings."""
     return rule(code, name, level, formats=(LAUNCH,), options=options)
 
 
@@ -120,7 +120,7 @@ def rules_in(package: str, *apart: str) -> list[Rule]:
 def robots_rule(
     code: str, name: str, level: str, *formats: str, options: Mapping[str, object] = OF_TWO
 ) -> Callable[[_FileCheck], Rule]:
-    """Make a function a rule about what several robots get of a file, asked as ``of_robots`` says."""
+    """Return a decorator for a rule about what several robots get of a file, as ``of_robots`` says."""
     return lambda find: declare(
         code, name, level, of_robots(find), formats=formats, options=options
     )

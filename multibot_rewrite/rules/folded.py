@@ -88,7 +88,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
 
 
 def _facet_values(seen: Index, it: Finding, common: str, side: int) -> Set[tuple[str, ...]]:
-    """Return what a cause (side 0) or what comes of it (-1) has of ``robot and server = node``."""
+    """Return the values that a cause (side 0), or what comes of it (-1), has in ``common``."""
     facets = (one.split(" = ")[side] for one in common.split(" and "))
     return {*product(*(_FACETS[facet](seen, it) for facet in facets))}
 
@@ -215,7 +215,7 @@ def _users(seen: Index, it: Finding) -> Sequence[str]:
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
-    """Return whether it is about the time that nodes get."""
+    """Return whether a finding is about the time that nodes get."""
     return any(end.type == "rosgraph_msgs/msg/Clock" for end in _ends(seen, it.names))
 
 

@@ -90,7 +90,7 @@ def _subjects(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
 
 
 def _is_of_an_end(it: Finding, rules: Mapping[str, Rule]) -> bool:
-    """Return whether it is of ``missing_endpoint``, whatever its name."""
+    """Return whether a finding is of ``missing_endpoint``, whatever its name."""
     return it.code == missing_endpoint.code or not rules[it.code].options["planned"]
 
 
@@ -112,7 +112,7 @@ def _same_causes(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterato
 
 
 def _has_instead(it: Finding) -> bool:
-    """Return whether the node has something in place of what it lacks."""
+    """Return whether the node of a finding has another name in place of what it lacks."""
     return len(it.names) > 1 or it.code != missing_endpoint.code
 
 
@@ -134,7 +134,7 @@ def _with_cause(
 def _hint_of_plan(
     it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]
 ) -> tuple[str, tuple[Remap, ...]]:
-    """Return the plan's hint with the remap rules that it names, those of all nodes named."""
+    """Return (the plan's hint, the remap rules that it names, those of all nodes named)."""
     first, *others = by_plan
     if not _is_of_an_end(first, rules):
         return first.hint, first.remaps

@@ -133,4 +133,5 @@ def unnamed(it: Finding) -> Finding:
 
 
 def _with_domain_last(text: str) -> str:
+    """Return a text with ``NAME of domain 11`` where it has the name for that domain."""
     return _SHORT.sub(r"domain \1", _FULL.sub(r"\2 of domain \1", text))

@@ -63,7 +63,7 @@ class DiscoverySettings(NamedTuple):
 
 
 def settings(environ: Mapping[str, str]) -> DiscoverySettings:
-    """Read the variables as rcl does; raises UsageError for values at which rcl exits."""
+    """Return the discovery settings as rcl reads them; raises UsageError where rcl exits."""
     domain = _parse_domain_id(environ.get("ROS_DOMAIN_ID", ""))
     text = environ.get("ROS_STATIC_PEERS", "")
     peers = tuple(filter(None, text.split(";")))

@@ -214,7 +214,7 @@ def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterat
 
 
 def _affixes(frame: str) -> Iterator[tuple[str, str]]:
-    """Yield each beginning and each end of a frame that a separator bounds, with it."""
+    """Yield (beginning, "") and ("", end) of a frame at each separator, which both include."""
     for at, it in enumerate(frame):
         if it == "/" or it in SEPARATORS:
             yield frame[: at + 1], ""

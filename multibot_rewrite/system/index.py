@@ -167,7 +167,7 @@ class Index(NamedTuple):
     @property
     @once
     def declared(self) -> Mapping[str, Robot]:
-        """The robots that a plan has."""
+        """The record of each robot of a plan, by name."""
         return {it.name: it for it in self.system.robots}
 
     @property
@@ -334,6 +334,7 @@ def beside(
 
 @once
 def _ends_by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
+    """Return the ends by robot, kind and name without the robot's."""
     return {
         (it.robot(name), kind, it.plain(name)): ends for (kind, name), ends in it.by_name.items()
     }
@@ -341,7 +342,7 @@ def _ends_by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
 
 @once
 def spaces(it: Index) -> Set[str]:
-    """Return the namespaces that have a node in them."""
+    """Return all namespaces that have a node in them or below them."""
     found: set[str] = set()
     for space in it.nodes:
         while (space := space.rpartition("/")[0]) and space not in found:
@@ -373,7 +374,7 @@ def at_work(ends: Iterable[End]) -> list[End]:
 
 
 def sent_on(it: Index, topic: str) -> tuple[str, tuple[str, ...]]:
-    """Return the type of a topic, and the nodes that publish it and are no viewers; empty without."""
+    """Return (type of a topic, nodes that publish it and are no viewers); empty without."""
     ends = it.ends_at(TOPIC, topic)
     return ends.type, nodes_of(at_work(ends.publishers))
 

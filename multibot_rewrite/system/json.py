@@ -92,12 +92,12 @@ def is_json(data: bytes) -> bool:
 
 
 def read_system(data: bytes, file: str) -> System:
-    """Read a system from YAML or JSON; raises InputError with file, key, fault and remedy."""
+    """Return the system in YAML or JSON; raises InputError with file, key, fault and remedy."""
     return from_json(data, file) if is_json(data) else from_yaml(data, file)
 
 
 def from_yaml(data: bytes, file: str) -> System:
-    """Read what ``to_yaml`` wrote; raises as ``read_system``."""
+    """Return the system that ``to_yaml`` wrote; raises as ``read_system``."""
     try:
         with gc_paused():
             return from_value(load_yaml(data.decode("utf-8-sig"), file, REMEDY), file)
@@ -106,7 +106,7 @@ def from_yaml(data: bytes, file: str) -> System:
 
 
 def from_json(data: bytes, file: str) -> System:
-    """Read what ``to_json`` wrote; raises as ``read_system``."""
+    """Return the system that ``to_json`` wrote; raises as ``read_system``."""
     with gc_paused():
         return from_value(json_value(data, file), file)
 
@@ -125,7 +125,7 @@ def json_value(data: bytes, file: str) -> object:
     except UnicodeDecodeError:
         raise InputError(f"{file}: not valid JSON: it is not UTF-8; {REMEDY}") from None
     except ValueError as error:
-        raise InputError(f"{file}: cannot be read as JSON: {error}") from None
+        raise InputError(f"{file}: cannot be read as JSON: {error}; {REMEDY}") from None
 
 
 def _record_or_object(value: dict[str, object]) -> object:

@@ -126,6 +126,7 @@ def _merged_ends(looks: Sequence[Sequence[End]]) -> list[End]:
 
 
 def _amount_of_detail(ends: Sequence[End]) -> tuple[int, int, int]:
+    """Return how many ends have a QoS, how many a hash, and how many there are: a sort key."""
     known = sum(end.qos is not None for end in ends)
     return known, sum(bool(end.type_hash) for end in ends), len(ends)
 

@@ -95,7 +95,7 @@ def _parameter_values(own: Sequence[Parameter]) -> dict[str, object]:
 
 
 def _is_plain(value: object) -> bool:
-    """Return whether it is a text, number or bool, or a list of these."""
+    """Return whether a value is a text, number or bool, or a list of these."""
     items = value if isinstance(value, list) else [value]
     return all(isinstance(it, bool | int | float | str) for it in items)
 
@@ -135,7 +135,7 @@ def _read_below(key: str, read: Reader, values: object) -> Any:
 
 
 def _pop_list(value: object, key: str) -> Any:
-    """Take what is below a key out of a value, and return it; a user may have left the key alone."""
+    """Return what is below a key, taken out of the value; empty where there is nothing."""
     found = value.pop(key, None) if isinstance(value, dict) else None
     return () if found is None else found
 

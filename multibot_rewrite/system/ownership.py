@@ -139,7 +139,7 @@ def whose_by_plan(plan: System) -> Whose:
 
 
 def is_alone(plan: System) -> bool:
-    """Return whether it is the plan of one robot, whose name no node or end has."""
+    """Return whether a plan is that of one robot, whose name no node or end has."""
     if len(plan.robots) != 1:
         return False
     word = plan.robots[0].space
@@ -302,7 +302,7 @@ def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
 
 
 def _is_last(names: Iterable[tuple[str, str]]) -> bool:
-    """Return whether the tag is more often at the end of a name than at its beginning."""
+    """Return whether tags are more often at the end of names than at their beginning."""
     more = 0
     for name, tag in names:
         plain = name.strip("/")

@@ -58,7 +58,7 @@ class WrongValue(Exception):
 
 
 def unexpected(expected: str, value: object) -> WrongValue:
-    """Return the error for a value where something else was expected."""
+    """Return the error for a value that is not what ``expected`` says."""
     return WrongValue(f"expected {expected}, not {shown(value)}")
 
 
@@ -110,7 +110,7 @@ def read_seconds(value: object) -> object:
 
 
 def read_transform(value: object) -> object:
-    """Return three numbers and four, or nothing; null is one that is none (NaN)."""
+    """Return three numbers and four, or nothing; null is a number that is NaN."""
     numbers = read_list(read_seconds, value)
     if len(numbers) not in (0, 7) or not all(
         abs(it) < FARTHEST or it == math.inf for it in numbers

@@ -156,7 +156,7 @@ class Robot(NamedTuple):
 
     @property
     def space(self) -> str:
-        """Its name in nodes and topics, without a slash in front."""
+        """The robot's name in nodes and topics, without a slash in front."""
         return self.namespace or self.name
 
 

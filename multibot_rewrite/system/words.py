@@ -77,7 +77,7 @@ def kind_of_data(name: str, type_: str) -> str:
 
 
 def is_description(name: str, type_: str) -> bool:
-    """Return whether it is the topic of a robot's description."""
+    """Return whether a topic is that of a robot's description."""
     return type_ == _TEXT and name.endswith(("description", "urdf"))
 
 
@@ -108,7 +108,7 @@ def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
 
 @lru_cache(maxsize=8)
 def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
-    """Return patterns of full names, and of last words."""
+    """Return two patterns for ``more``: of full names, and of last words."""
     sides = ([p for p in more if "/" in p], [p for p in more if "/" not in p])
     full, last = (re.compile("|".join(map(translate, side)) or "(?!)") for side in sides)
     return full, last
@@ -120,7 +120,7 @@ def is_viewer(node: str) -> bool:
 
 
 def is_hidden(node: str) -> bool:
-    """Return whether it is a node of the ``ros2`` command, or another that hides itself."""
+    """Return whether a node is of the ``ros2`` command, or hides itself."""
     return last_word(node).startswith("_")
 
 

@@ -121,7 +121,7 @@ def write(path: Path, text: str) -> None:
         (("inspect", ROVER), "rover.urdf shows what is unknown in it"),
         (("inspect", ARM, ARM), "the arguments of one xacro file are shown; leave it out"),
         (("inspect", "name:=a"), "name:=a is an argument of a xacro file; name the file"),
-        (("inspect", ROVER, "name:=a"), "NAME:=VALUE is for xacro"),
+        (("inspect", ROVER, "name:=a"), "is no xacro: leave out NAME:=VALUE"),
     ],
 )
 def test_wrong_use_is_one_line(multibot: Multibot, words: tuple[str, ...], said: str) -> None:

@@ -128,7 +128,7 @@ def test_robots_are_a_number_beside_arguments_of_a_xacro() -> None:
     assert robots(options) == ["robot1", "robot2", "robot3"]
     assert xacro_args(options) == {"name": "a:=b", "empty": ""}
     check_xacro(options, [ROVER, ARM])
-    with pytest.raises(UsageError, match=r"NAME:=VALUE is for xacro, a\.urdf is no xacro"):
+    with pytest.raises(UsageError, match=r"a\.urdf is no xacro: leave out NAME:=VALUE"):
         check_xacro(options, ["a.urdf"])
 
 
@@ -225,7 +225,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
             "multibot inspect --strict",
             "--fail-on does that, which urdf-postfix, urdf-lint, multibot",
         ),
-        ("urdf-postfix nosuch.yaml robot1", "nosuch.yaml is not there\n"),
+        ("urdf-postfix nosuch.yaml robot1", "nosuch.yaml is not there; correct the path\n"),
         (
             "multibot plan nosuch.yaml",
             "nosuch.yaml is not there; multibot init PATH... writes a fleet",
@@ -527,18 +527,28 @@ def test_nothing_is_imported_before_ctrl_c_is_quiet() -> None:
     assert {*python(code).split()} - {*sys.builtin_module_names} == own
 
 
+# In a callback of a weak reference an exception is printed and forgotten.
+FORGOTTEN = """
+import signal, time, weakref
+from multibot_rewrite.cli.process import guarded
+def run():
+    gone = weakref.ref(type('A', (), {})(), lambda _: signal.raise_signal(signal.SIGINT))
+    time.sleep(20)
+    return 0
+signal.signal(signal.SIGINT, signal.default_int_handler)
+guarded('multibot', run, True)"""
+BEFORE_A_COMMAND = """
+import signal, sys
+from types import SimpleNamespace
+from multibot_rewrite.cli import entry
+main = lambda: signal.raise_signal(signal.SIGINT)
+sys.modules['multibot_rewrite.cli.multibot'] = SimpleNamespace(main=main)
+entry.multibot()"""
+
+
 @pytest.mark.slow
-def test_ctrl_c_that_python_would_lose_ends_the_command() -> None:
-    """In a callback of a weak reference an exception is printed and forgotten."""
-    code = (
-        "import signal, time, weakref\nfrom multibot_rewrite.cli.process import guarded\n"
-        "def run():\n"
-        "    gone = weakref.ref(type('A', (), {})(), lambda _: signal.raise_signal(signal.SIGINT))\n"
-        "    time.sleep(20)\n"
-        "    return 0\n"
-        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        "guarded('multibot', run, True)"
-    )
+@pytest.mark.parametrize("code", [FORGOTTEN, BEFORE_A_COMMAND])
+def test_ctrl_c_ends_with_one_line(code: str) -> None:
     words = [sys.executable, "-c", code]
     done = subprocess.run(words, check=False, capture_output=True, text=True, timeout=15)
     told = "multibot: interrupted; no half-written file is left\n"

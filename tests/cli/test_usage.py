@@ -246,7 +246,8 @@ def test_files_below_folders_are_each_once_and_in_order(tmp_path: Path) -> None:
     assert walk.find_files([str(tmp_path / "c.txt")], suffixes).files == [str(tmp_path / "c.txt")]
     gone, empty = str(tmp_path / "gone"), tmp_path / "empty"
     empty.mkdir()
-    assert said(walk.find_files, [gone], suffixes) == f"{gone}: there is no such file or folder"
+    told = f"{gone}: there is no such file or folder; correct the path"
+    assert said(walk.find_files, [gone], suffixes) == told
     assert said(walk.find_files, [str(empty)], suffixes) == (
         f"{empty}: no *.urdf or *.sdf there; name a file or another folder"
     )
@@ -283,7 +284,7 @@ def test_the_folder_of_a_result_can_be_made(tmp_path: Path) -> None:
     walk.check_folder(str(tmp_path / "new" / "sub" / "a"))
     target = str(tmp_path / "file" / "sub" / "a")
     assert said(walk.check_folder, target) == (
-        f"{target}: cannot be written: {tmp_path / 'file'} is a file, not a folder"
+        f"{target}: cannot be written: {tmp_path / 'file'} is a file; name another folder"
     )
 
 
@@ -396,9 +397,9 @@ def test_files_that_options_name_to_be_read() -> None:
          "g.json is not there; multibot snapshot -o FILE writes one"),
         ({"plan": "out/p.yaml"}, "out/p.yaml is not there; multibot build and multibot plan write one"),
         ({"input": "other.yaml"}, "other.yaml is not there; multibot init PATH... writes a fleet file"),
-        ({"input": "p.yaml", "command": "urdf-postfix"}, "p.yaml is not there"),
+        ({"input": "p.yaml", "command": "urdf-postfix"}, "p.yaml is not there; correct the path"),
         ({"fleet": "our.yml"}, "our.yml is not there; multibot init PATH... writes a fleet file"),
-        ({"urdf": "none.xacro"}, "none.xacro is not there"),
+        ({"urdf": "none.xacro"}, "none.xacro is not there; correct the path"),
     ],
 )  # fmt: skip
 def test_a_file_that_is_not_there_is_told_with_what_helps(

@@ -61,7 +61,7 @@ WRONG = (
       for it in ("undo", "in-place", "diff")),
     *((f"{it} a --in-place", ("--in-place needs a URDF file, not standard input or xacro\n",))
       for it in ("-", "r.xacro", "r.urdf.xacro")),
-    *((f"{it} x:=1", (f"NAME:=VALUE is for xacro, {name} is no xacro\n",))
+    *((f"{it} x:=1", (f"{name} is no xacro: leave out NAME:=VALUE\n",))
       for it, name in (("r.urdf a", "r.urdf"), ("- a", "<stdin>"), ("r.urdf a --undo", "r.urdf"))),
     # Where the result goes.
     ("r.urdf a -o ''", ("-o/--output: the name is empty",)),

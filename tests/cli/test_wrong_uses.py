@@ -83,7 +83,7 @@ LINT = {
     ("given", "message"),
     [
         ({"words": []}, "no PATH given; for example: urdf-lint urdf/"),
-        ({"words": ["a", ""]}, "the name of a file is empty"),
+        ({"words": ["a", ""]}, "the name of a file is empty; write its path"),
         *(
             ({"words": ["-"], **it},
              "standard input is linted alone, without --fix and --changed-since")

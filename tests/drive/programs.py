@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import csv
+import lzma
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache
@@ -128,7 +129,7 @@ class Opened(NamedTuple):
 def table(release: str) -> Mapping[str, tuple[Mapping[str, str], ...]]:
     """Return the rows of each node of a release."""
     rows: dict[str, list[Mapping[str, str]]] = {}
-    with (ROOT / "fixtures" / "interfaces" / f"{release}.tsv").open() as file:
+    with lzma.open(ROOT / "fixtures" / "interfaces" / f"{release}.tsv.xz", "rt") as file:
         for row in csv.DictReader(file, delimiter="\t", quoting=csv.QUOTE_NONE):
             rows.setdefault(row["node"], []).append(row)
     return {node: tuple(found) for node, found in rows.items()}
@@ -313,7 +314,7 @@ def pattern(key: str) -> str:
 def defaults(node: str, release: str) -> Mapping[str, Any]:
     """Return the frames and switches that a node has without a parameter file."""
     found = {}
-    with (ROOT / "fixtures" / "interfaces" / f"parameters_{release}.tsv").open() as file:
+    with lzma.open(ROOT / f"fixtures/interfaces/parameters_{release}.tsv.xz", "rt") as file:
         for row in csv.reader(file, delimiter="\t", quoting=csv.QUOTE_NONE):
             wanted = ("frame", "tf_", "publish_tf", "topic")
             own = row[1] == CLASSES.get(node, node) and row[4]

@@ -971,11 +971,13 @@ ODOMETRY = """<gazebo>
       <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
       <odom_topic>/model/bot/odometry</odom_topic><odom_frame>odom</odom_frame>
       <robot_base_frame>base_link</robot_base_frame></plugin></gazebo></robot>"""
+GROUND_TRUTH = ODOMETRY.replace("odom_frame>odom", "odom_frame>world")
 TWO_OF_THEM = ODOMETRY.replace("</robot>", ODOMETRY.replace("<odom_frame>odom", "<odom_frame>map"))
 
 
 @pytest.mark.parametrize(
-    ("is_bridged", "systems"), [(True, ODOMETRY), (False, ODOMETRY), (False, TWO_OF_THEM)]
+    ("is_bridged", "systems"),
+    [(True, ODOMETRY), (False, ODOMETRY), (False, GROUND_TRUTH), (False, TWO_OF_THEM)],
 )
 def test_transforms_of_a_system_are_bridged_where_no_node_sends_them(
     is_bridged: bool, systems: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -985,7 +987,7 @@ def test_transforms_of_a_system_are_bridged_where_no_node_sends_them(
     values = "{'world_frame': 'odom', 'base_link_frame': 'base_link', 'publish_tf': True}"
     body = """Node(package='ros_gz_bridge', executable='parameter_bridge',
             arguments=['/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry']),"""
-    if not is_bridged and systems == ODOMETRY:
+    if not is_bridged and systems != TWO_OF_THEM:
         body += "Node(package='robot_localization', executable='ekf_node', name='ekf_filter_node',"
         body += f"parameters=[{values}]),"
     with pytest.MonkeyPatch.context() as patched:
@@ -1034,7 +1036,12 @@ def test_move_group_has_what_its_launch_file_and_its_files_say_of_pipelines(tmp_
 
 
 @pytest.mark.parametrize(
-    "file", ["ros_gz_sim/launch/gz_sim.launch.py", "ros_ign_gazebo/launch/ign_gazebo.launch.py"]
+    "file",
+    [
+        "ros_gz_sim/launch/gz_sim.launch.py",
+        "ros_ign_gazebo/launch/ign_gazebo.launch.py",
+        "gazebo_ros/launch/gazebo.launch.py",
+    ],
 )
 def test_a_simulator_is_started_once_by_its_launch_file(file: str, tmp_path: Path) -> None:
     """No package has a program gzserver but gazebo_ros: ros2 launch would end."""
@@ -1043,6 +1050,8 @@ def test_a_simulator_is_started_once_by_its_launch_file(file: str, tmp_path: Pat
     found = actions(tmp_path, body, more="simulator: gazebo")
     assert [it.kind for it in found].count("IncludeLaunchDescription") == 1
     assert "gzserver" not in told(found)
+    # The description says nothing of a simulator.
+    assert ("spawn_entity.py" in told(found)) is (package == "gazebo_ros")
 
 
 @pytest.mark.parametrize(

@@ -29,6 +29,7 @@ from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2, known_program
 from multibot_rewrite.live.rehearsal import isolated_environment
+from tools.interfaces.table import read_packed
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"
 in_launch = pytest.mark.skipif(bool(launch.missing()), reason=REASON)
@@ -154,7 +155,7 @@ def test_slam_toolbox_is_configured_and_activated_once(
 
 def launched_by(release: str) -> Iterator[tuple[str, str, str]]:
     """Kind, package and program or class of all that launch files of Nav2 start."""
-    text = (FIXTURES / "interfaces" / f"launch_{release}.tsv").read_text()
+    text = read_packed(FIXTURES / "interfaces" / f"launch_{release}.tsv.xz")
     for line in text.splitlines():
         yield tuple(line.split("\t")[1:4])  # type: ignore[misc]
 

@@ -28,6 +28,7 @@ from multibot_rewrite.rules.files.parameter_files import beyond
 from multibot_rewrite.rules.settings import Settings
 from tools.interfaces.declared_table import ID, plugin_owners, table
 from tools.interfaces.parameter_facts import read_parameters
+from tools.interfaces.table import read_packed
 
 SHIPPED = Path(FILE)
 CONTROLLERS = fixture_text("lint_beside_controllers.yaml")
@@ -516,7 +517,7 @@ def test_every_class_of_a_package_with_plugins_has_a_plugin() -> None:
     servers |= {"utils", "EdgeScorer", "OperationsManager", "RouteOperationClient"}
     servers |= {"PluginContainerLayer", "CollisionMonitor", "CollisionDetector", "ExclusionZone"}
     for release in RELEASES:
-        text = (FIXTURES / f"interfaces/parameters_{release}.tsv").read_text()
+        text = read_packed(FIXTURES / f"interfaces/parameters_{release}.tsv.xz")
         for it in read_parameters(text):
             if it.package in known.packages.values() and it.path.startswith(ID):
                 is_known = it.owner in servers or (it.package, it.owner) in known.owners
@@ -559,7 +560,7 @@ def test_a_name_of_older_releases_is_told_with_the_new_one(tmp_path: Path) -> No
     [
         ("", "MB110", "did you mean 'enable_odom_tf'?"),
         # The right one is there: the other does nothing, whatever it is near to.
-        ("    enable_odom_tf: true\n", "MB111", "nothing reads it; see "),
+        ("    enable_odom_tf: true\n", "MB111", "nothing reads it; delete it, see "),
     ],
 )
 def test_a_drive_is_given_the_name_of_another_program(

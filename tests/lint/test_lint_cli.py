@@ -127,7 +127,7 @@ WRONG: list[tuple[Sequence[str], str]] = [
     (["good.urdf", "--config", "no.toml"], "no.toml"),
     (["good.urdf", "--baseline", "no.json"], "no.json"),
     (["good.urdf", "--definitions", "no.vocab"], "no.vocab"),
-    (["good.urdf", "--output", "left.urdf/report"], "left.urdf is a file, not a folder"),
+    (["good.urdf", "--output", "left.urdf/report"], "left.urdf is a file; name another folder"),
     (["good.urdf", "--output", "good.urdf"], "choose another one for --output"),
     (["good.urdf", "--output", "sub/../good.urdf"], "choose another one for --output"),
     (["sub", "--write-baseline", "sub/other.srdf"], "choose another one for --write-baseline"),
@@ -152,7 +152,11 @@ def test_wrong_use_is_one_line_and_changes_nothing(
 @pytest.mark.usefixtures("here")
 def test_zero_files_are_no_pass(capsys: pytest.CaptureFixture[str]) -> None:
     Path("urdf-lint.toml").write_text('exclude = ["*.urdf", "*.srdf"]\n')
-    assert said(capsys, ".") == (2, "", "urdf-lint: .: exclude leaves no file to lint\n")
+    assert said(capsys, ".") == (
+        2,
+        "",
+        "urdf-lint: .: exclude leaves no file to lint; name a file itself\n",
+    )
     assert said(capsys, "good.urdf")[0] == 0
 
 

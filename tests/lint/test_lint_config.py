@@ -213,7 +213,7 @@ def test_a_wrong_project_file_is_one_line(tmp_path: Path, text: str, words: str)
     [
         ("none.toml", None, "cannot be read: No such file"),
         ("", None, "cannot be read: Is a directory"),
-        ("pyproject.toml", b"[project]\n", "there is no table [tool.urdf-lint] in it"),
+        ("pyproject.toml", b"[project]\n", "it has no table [tool.urdf-lint]; add it"),
         ("a.toml", b"# \xff", "1: it is not UTF-8"),
     ],
 )

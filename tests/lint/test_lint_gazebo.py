@@ -644,8 +644,8 @@ RADIUS_IS = (
         (system("label", "Label", "<label>255</label>"), ""),
         (
             system("thruster", "Thruster"),
-            "MB115 error <plugin: gz-sim-thruster-system needs 'joint_name'; without it, it is not"
-            " loaded (Thruster.cc:242)",
+            "MB115 error <plugin: gz-sim-thruster-system needs 'joint_name'; add it: it is not"
+            " loaded without (Thruster.cc:242)",
         ),
         (
             system(*MOTOR, "<turningDirection>ccww</turningDirection>"),
@@ -688,7 +688,7 @@ RADIUS_IS = (
         ),
         (
             classic("gazebo_ros_p3d", "<ros/>"),
-            "MB115 error <plugin: gazebo_ros_p3d needs 'body_name'; without it, it is not loaded"
+            "MB115 error <plugin: gazebo_ros_p3d needs 'body_name'; add it: it is not loaded without"
             " (gazebo_ros_p3d.cpp:115)",
         ),
         (

@@ -181,6 +181,24 @@ def test_a_joint_whose_state_nobody_sends(links: str, heard: str, level: str, re
 
 
 @pytest.mark.parametrize(
+    ("links", "more", "level"),
+    [
+        ("base, arm, hand", "", "warning"),
+        ("base, arm, hand", "/robot1/move_group subscribes", "error"),
+        ("base, arm", "", ""),
+        ("base, arm, hand", "/robot1/jsp publishes", ""),
+    ],
+)
+def test_joints_of_which_nobody_sends_a_state(links: str, more: str, level: str) -> None:
+    joints = "/robot1/joint_states sensor_msgs/msg/JointState"
+    lines = [it.format("robot1") for it in ROBOT if "jsb" not in it]
+    lines.append(f"description on /robot1/robot_description: links {links}; joints a, b")
+    lines += [f"/robot1/rsp subscribes {joints}", *[f"{more} {joints}"] * bool(more)]
+    found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
+    assert [(it.code, it.level) for it in found] == [("MG420", level)] * bool(level)
+
+
+@pytest.mark.parametrize(
     ("heard", "wrong"), [(["head"], False), (["head", "a"], False), (["head", "neck"], True)]
 )
 def test_several_who_send_joints_have_them_together(heard: list[str], wrong: bool) -> None:

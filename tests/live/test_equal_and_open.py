@@ -156,6 +156,21 @@ SINGLE = {
         f"/l subscribes /tf {TF} reliable volatile\n",
         "MG307",
     ),
+    "a tool that lacks the transforms of one sender": (
+        f"/a publishes /tf {TF} reliable volatile\n/b publishes /tf {TF} best_effort volatile\n"
+        f"/rosbridge_websocket subscribes /tf {TF} reliable volatile\n",
+        "MG307",
+    ),
+    "a tool that reads a map later": (
+        "/map_server publishes /map nav_msgs/msg/OccupancyGrid reliable transient_local\n"
+        "/rviz2 subscribes /map nav_msgs/msg/OccupancyGrid reliable volatile\n",
+        "MG309",
+    ),
+    "commands by hand without the stamp that the drive reads": (
+        "/drive subscribes /drive/cmd_vel geometry_msgs/msg/TwistStamped\n"
+        "/teleop publishes /drive/cmd_vel_unstamped geometry_msgs/msg/Twist\n",
+        "MG308",
+    ),
     "a tf_static that is not kept, once for all its readers": (
         f"/a publishes /tf_static {TF} reliable volatile\n"
         f"/l subscribes /tf_static {TF} reliable transient_local\n"
@@ -175,7 +190,15 @@ def test_a_small_graph_with_one_fault_has_one_finding(what: str) -> None:
     text, code = SINGLE[what]
     (it,) = found(text)
     assert it.code == code
-    # What is the same twice is a note; the sender comes first where it is at fault.
-    assert (it.level == "note") == (code == "MG408")
+    # What is the same twice, or only a tool lacks, is a note; the sender comes first if at fault.
+    assert (it.level == "note") == (code == "MG408" or "tool that reads" in what)
     if "tf_static that is not kept" in what:
         assert it.node == "/a"
+
+
+def test_odometry_under_other_names_is_the_cause_of_a_tree_in_pieces() -> None:
+    frames = ("map -> odom", "base_link -> laser", "robot1/odom -> robot1/base_link")
+    lines = (f"transform {it} on /robot1/tf by /robot1/drive" for it in frames)
+    (it,) = found("\n".join((f"/robot1/drive publishes /robot1/tf {TF}", *lines)))
+    assert it.code == "MG406"
+    assert it.hint.startswith("/robot1/drive sends robot1/odom -> robot1/base_link: use one name")

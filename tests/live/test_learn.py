@@ -375,7 +375,7 @@ def test_what_the_check_ignores_is_not_learned_unless_asked_for_by_name(tool: st
     [
         (["/drivr"], "/", "/drivr: no node has this name; running are /driver"),
         (["/zzz"], "/", "/zzz: no node has this name; running are /driver, /r1/planner"),
-        (["/driver"], "/r1", "/driver: the node is not below --namespace /r1"),
+        (["/driver"], "/r1", "/driver: it is not below --namespace /r1"),
         ([], "/r2", "there is no node to learn below /r2; running are"),
         ([], "/r 2", "namespace '/r 2': character 3, ' ', is not a letter"),
         (["/twin"], "/", "/twin: 2 nodes have this name; stop all but one"),
@@ -396,9 +396,9 @@ def test_nodes_that_cannot_be_learned(names: list[str], namespace: str, said: st
         ((TOPIC, PUBLISHES, "/a b", TEXT), "topic name '/a b' in the graph: character 3"),
         (
             (SERVICE, PUBLISHES, "/x", TRIGGER),
-            "/driver publishes the service /x, which is not possible",
+            "/driver publishes the service /x, which ROS has not",
         ),
-        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which is not possible"),
+        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which ROS has not"),
     ],
 )
 def test_an_endpoint_that_no_node_can_have(end: tuple[str, str, str, str], said: str) -> None:
@@ -503,7 +503,7 @@ def test_helpers_without_a_node_are_reported(
         (["--domain", "5"], "--domain is for the live graph, leave out --from"),
         (["--node"], "argument --node: expected one argument"),
         (["--node", "/driver", "/eye"], "unexpected /eye; a list is written A,B"),
-        (["-o", "/dev/null/mine.yaml"], "/dev/null is a file, not a folder"),
+        (["-o", "/dev/null/mine.yaml"], "/dev/null is a file; name another folder"),
     ],
 )
 def test_wrong_use_is_one_line(

@@ -99,7 +99,7 @@ def test_a_xacro_file_is_expanded(tmp_path: Path) -> None:
 
 
 def test_xacro_arguments_need_a_xacro_file(path: Path) -> None:
-    with pytest.raises(UsageError, match="xacro arguments given"):
+    with pytest.raises(UsageError, match="it is no xacro; leave out"):
         rewrite(path, "r1", xacro_args={"m": "pole"})
 
 

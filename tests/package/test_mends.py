@@ -82,7 +82,7 @@ ROWS = (
         (("arm.urdf", '<child link="fore_link"/>\n', f'<child link="fore_link"/>\n{ELBOW}'),)),
     Row("MB538", (ARM,),
         (("arm.urdf", FIRST, f'{FIRST[:-2]}><param name="min">-9</param></command_interface>'),),
-        "urdf-lint arm.urdf", "its <limit> is -1.5 to 1.5", (("arm.urdf", ">-9<", ">-1.5<"),)),
+        "urdf-lint arm.urdf", "stay in its <limit>: -1.5 to 1.5", (("arm.urdf", ">-9<", ">-1.5<"),)),
     Row("MB629", (GZ,), (("rover_gz.urdf", "<camera>", f"<camera><clip>{CLIP % (10, 0.1)}</clip>"),),
         "urdf-lint rover_gz.urdf", "write a near above 0 and below far",
         (("rover_gz.urdf", CLIP % (10, 0.1), CLIP % (0.1, 10)),)),

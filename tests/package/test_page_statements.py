@@ -42,13 +42,16 @@ ELSEWHERE = {
 }
 
 
-def test_the_top_of_the_repository_holds_what_is_meant_to_be_there() -> None:
+def test_the_repository_holds_what_is_meant_to_be_there_and_is_small() -> None:
     done = subprocess.run(
         ["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False
     )
     if done.returncode:
         pytest.skip("no clone: git knows no files here")
-    assert {it.partition("/")[0] for it in done.stdout.splitlines()} == TOP
+    files = done.stdout.splitlines()
+    assert {it.partition("/")[0] for it in files} == TOP
+    sizes = {it: (ROOT / it).stat().st_size for it in files if (ROOT / it).exists()}
+    assert sum(sizes.values()) < 18_000_000 and max(sizes.values()) < 250_000
 
 
 def named_paths(text: str) -> Iterator[str]:

@@ -253,6 +253,22 @@ def test_what_two_latched_senders_have_otherwise_is_nowhere() -> None:
     assert ears.it.last[ReceivedTransform("/tf", False, "base", "b")][0] == 2.0
 
 
+def test_a_sender_that_is_started_again_is_no_second_one() -> None:
+    """Each numbers its messages from 1; what is latched is heard again from all who still send."""
+    ears = Ears()
+
+    def heard(*processes: str) -> set[str]:
+        end = tf_end("/tf_static", qos=LATCHED)
+        ears.it.update([end._replace(process=it) for it in processes], False)
+        for _ in processes:
+            ears.heard["/tf_static", True](SimpleNamespace(transforms=[stamped("a")]), 1)
+        return {it.topic for it in ears.it.of_several()}
+
+    assert (heard("first"), heard("second"), heard("third")) == (set(), set(), set())
+    assert ears.ended == ["/tf_static", "/tf_static"]
+    assert heard("third", "fourth") == {"/tf_static"}
+
+
 def test_a_topic_that_cannot_be_read_is_told_with_the_reason() -> None:
     ears = Ears("/tf")
     ears.it.update([tf_end("/tf")], False)

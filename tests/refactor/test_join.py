@@ -334,7 +334,7 @@ def test_a_wrong_call_is_told_in_one_line(case: str) -> None:
 
 EDITED = {
     "the comment at the end": ("multibot end hand", "multibot endhand", "was edited by hand"),
-    "what it is": ("multibot base arm", "multi base arm", "its parts are not known"),
+    "what it is": ("multibot base arm", "multi base arm", "multibot join did not make it"),
     "a name without its prefix": ("h_finger", "finger", "h_"),
 }
 

@@ -80,7 +80,7 @@ def test_a_group_of_two_parts_and_what_is_no_srdf_are_refused() -> None:
         InputError, match="group 'fingers' is in <text>, too; give the part a prefix"
     ):
         join([first._replace(srdf=both), second])
-    with pytest.raises(InputError, match="not an SRDF"):
+    with pytest.raises(InputError, match="name an SRDF"):
         join([first._replace(srdf="<sdf/>"), second])
 
 

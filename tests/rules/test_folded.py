@@ -142,6 +142,11 @@ CAUSES = {
         *(f"/robot2/{it} publishes /robot2/{it}/joint_states {JOINTS}" for it in "abc"),
         *(f"/robot{at}/{it} subscribes /robot{at}/{part}/joint_states {JOINTS}"
           for at in "12" for it, part in zip(("rsp", "pilot", "eyes"), "abc", strict=True))),
+    "a controller_manager is off": ("MG322", "no controller_manager, as robot2 has (/robot2/co", "",
+        *(f"/robot2/{it} on machine 1" for it in ("controller_manager", *"abc")),
+        *(f"/robot2/{it} publishes /robot2/{it}/joint_states {JOINTS}" for it in "abc"),
+        *(f"/robot{at}/{it} subscribes /robot{at}/{part}/joint_states {JOINTS}"
+          for at in "12" for it, part in zip(("rsp", "pilot", "eyes"), "abc", strict=True))),
     "one filter sends on a topic of its robot, all others on /tf": (
         "MG405", "/robot1/ekf sends tf on /robot1/tf, but the tf of robot1 is on /tf", "",
         *(f"/robot{at}/{it} publishes {topic} {TF}" for at, it, topic in (

@@ -23,6 +23,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.check import check, judge
 from multibot_rewrite.rules.system.differing import COMPARED
 from multibot_rewrite.system.records import System
+from tools.interfaces.table import read_packed
 
 CODE = re.compile(r"\bMG\d{3}\b")
 TWIST, SCAN = "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"
@@ -169,7 +170,7 @@ NAMES = re.compile(
 @cache
 def parameters(release: str) -> frozenset[tuple[str, str]]:
     """Package and name of each parameter that a release declares."""
-    lines = (FIXTURES / "interfaces" / f"parameters_{release}.tsv").read_text().splitlines()
+    lines = read_packed(FIXTURES / "interfaces" / f"parameters_{release}.tsv.xz").splitlines()
     rows = (it.split("\t") for it in lines if it.count("\t") > 2)
     return frozenset((row[0], row[2].rpartition(".")[2]) for row in rows)
 

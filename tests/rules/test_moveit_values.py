@@ -189,7 +189,7 @@ scan_to_scan_filter_chain:
       filter1: {name: a, type: laser_filters/InterpolationFilter}
 """
     chain, number = "scan_to_scan_filter_chain", "filters are called filter1, filter2 and so on"
-    unset = "the chain is not configured without"
+    unset = "add it: the chain is not configured without"
     assert told(tmp_path, "filters.yaml", text, "MB896") == [
         f"4:21 error {chain}: filter2 has the name 'a', as filter1 has; give it another name",
         f"5:15 error {chain}: filter3 has no name; {unset}",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Endpoints of nodes as their sources declare them: ``fixtures/interfaces/RELEASE.tsv``."""
+"""Endpoints of nodes as their sources declare them: ``fixtures/interfaces/RELEASE.tsv.xz``."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from multibot_rewrite.planning.of_runs import parsed
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End
 from tools.interfaces.compare import is_same
-from tools.interfaces.table import Fact, from_table
+from tools.interfaces.table import Fact, from_table, read_packed
 
 # What rclcpp gives every node, and rclcpp_lifecycle those that have it (their node.cpp).
 SERVICES = ("get_parameters", "set_parameters", "list_parameters", "describe_parameters",
@@ -55,7 +55,7 @@ GIVEN = {("servo_node", "publishes", "monitored_planning_scene"): "~/publish_pla
 @cache
 def facts(release: str) -> dict[str, list[Fact]]:
     found: dict[str, list[Fact]] = {}
-    for fact in from_table((FIXTURES / "interfaces" / f"{release}.tsv").read_text()):
+    for fact in from_table(read_packed(FIXTURES / "interfaces" / f"{release}.tsv.xz")):
         if not any(it in DEFAULT.sub("", fact.condition) for it in OFF):
             name = GIVEN.get((fact.node, fact.role, fact.name), fact.name)
             type_ = ALIASES.get(fact.node, fact.type) if fact.type == "CmdType" else fact.type

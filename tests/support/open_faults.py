@@ -236,6 +236,14 @@ def sender_rows() -> tuple[Fault, ...]:
             "MG417", ("/robot1/imu_driver", "another clock"),
         ),
         Fault(
+            "stamps of this second of the machine's time in a simulation", simulation,
+            both(
+                stamped("/robot1/scan", 0.0), stamped("/robot2/scan", 1.7e9),
+                offered("/robot1/scan", VOLATILE, VOLATILE, "durability"),
+            ),
+            "MG417", ("/robot1/lidar_driver", "not of /clock"),
+        ),
+        Fault(
             "stamps of the machine's time in a simulation", simulation, stamped("/robot1/scan", 2.0),
             "MG417", ("/robot1/lidar_driver", "not of /clock"),
         ),

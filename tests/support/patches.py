@@ -122,9 +122,11 @@ def _clock(graph: System, it: Setting) -> System:
     apart = (one for one in graph.ends if one[:3] != clock[:3] or one.node != it.node)
     ends = (*apart, *[clock] * (it.value == "true"))
     sent = {one.name for one in ends if one.node == it.node and one.role == PUBLISHES}
-    # What it stamps has the time that it has.
-    heard = (one._replace(age=0.0) if one.topic in sent else one for one in graph.heard)
-    edges = (one._replace(age=0.0) if it.node in one.publishers else one for one in graph.edges)
+    # What it stamps has the time that it has: that of the others on simulated time.
+    simulated = max((one.age for one in graph.heard if one.topic not in sent), default=0.0)
+    age = simulated if it.value == "true" else 0.0
+    heard = (one._replace(age=age) if one.topic in sent else one for one in graph.heard)
+    edges = (one._replace(age=age) if it.node in one.publishers else one for one in graph.edges)
     return graph._replace(ends=ends, heard=tuple(heard), edges=tuple(edges))
 
 

@@ -2,8 +2,8 @@
 """A healthy system of a vendor: the nodes that its launch files start, with what their sources declare.
 
 Names and namespaces are those of ``launch_recorder.py``, remap rules those and, for what they do not
-separate, those of the remap table; topics, services and actions are
-those of ``fixtures/interfaces/RELEASE.tsv``. Only values of parameters are taken from the plan. What a
+separate, those of the remap table; topics, services and actions are those of
+``fixtures/interfaces/RELEASE.tsv.xz``. Only values of parameters are taken from the plan. What a
 node without such a row has is not known here: it is left out of the plan that is compared, too.
 """
 

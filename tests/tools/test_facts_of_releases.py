@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """``nodes.yaml`` says of each release what its sources say, or an exception says why not.
 
-``fixtures/interfaces/RELEASE.tsv`` is what ``python -m tools.interfaces`` found in the
+``fixtures/interfaces/RELEASE.tsv.xz`` is what ``python -m tools.interfaces`` found in the
 checkouts that ``fixtures/interfaces/sources.tsv`` lists.
 """
 
@@ -24,7 +24,7 @@ from tools.interfaces.compare import (
     excepted,
     exceptions_of,
 )
-from tools.interfaces.table import Fact, from_table
+from tools.interfaces.table import Fact, from_table, read_packed
 
 EXCEPTIONS = exceptions_of((FIXTURES / "interfaces_exceptions.tsv").read_text())
 LEAST_FACTS = 400
@@ -33,7 +33,7 @@ TF = "tf2_msgs/msg/TFMessage"
 
 @cache
 def facts(release: str) -> tuple[Fact, ...]:
-    return from_table((FIXTURES / "interfaces" / f"{release}.tsv").read_text())
+    return from_table(read_packed(FIXTURES / "interfaces" / f"{release}.tsv.xz"))
 
 
 @cache

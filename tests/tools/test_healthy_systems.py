@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A healthy system of a release has no finding: its endpoints are what the sources declare.
 
-Each node has what ``fixtures/interfaces/RELEASE.tsv`` says of it, in its robot's namespace and with
+Each node has what ``fixtures/interfaces/RELEASE.tsv.xz`` says of it, in its robot's namespace and with
 the remap rules of the table. Only values of parameters are taken from the node set.
 """
 

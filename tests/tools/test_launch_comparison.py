@@ -26,6 +26,7 @@ from tools.interfaces.launch_comparison import (
 )
 from tools.interfaces.launch_files import LaunchedNode
 from tools.interfaces.parameter_tables import LaunchFact, launch_lines, read_launches
+from tools.interfaces.table import read_packed
 
 TABLES = FIXTURES / "interfaces"
 NODE_SETS = (ROOT / "multibot_rewrite" / "knowledge" / "node_sets.yaml").read_text()
@@ -39,7 +40,7 @@ EXCEPTIONS = {
 
 @cache
 def facts(release: str) -> tuple[LaunchFact, ...]:
-    return read_launches((TABLES / f"launch_{release}.tsv").read_text())
+    return read_launches(read_packed(TABLES / f"launch_{release}.tsv.xz"))
 
 
 @cache
@@ -77,7 +78,7 @@ def test_what_was_corrected_stays_so() -> None:
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_a_table_is_read_as_it_is_written(release: str) -> None:
-    text = (TABLES / f"launch_{release}.tsv").read_text()
+    text = read_packed(TABLES / f"launch_{release}.tsv.xz")
     assert "".join(f"{it}\n" for it in launch_lines(facts(release))) == text
 
 

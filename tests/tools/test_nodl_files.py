@@ -13,11 +13,11 @@ from paths import FIXTURES
 from multibot_rewrite.base.model import UsageError
 from tools.interfaces.__main__ import main
 from tools.interfaces.nodl_files import nodl_of
-from tools.interfaces.table import Fact, from_table
+from tools.interfaces.table import Fact, from_table, read_packed
 
 
 def facts() -> tuple[Fact, ...]:
-    return from_table((FIXTURES / "interfaces" / "jazzy.tsv").read_text())
+    return from_table(read_packed(FIXTURES / "interfaces" / "jazzy.tsv.xz"))
 
 
 def test_a_document_has_what_the_sources_say() -> None:

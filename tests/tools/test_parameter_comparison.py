@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Our table of parameters is what the sources of each release say, or an exception says why not.
 
-``fixtures/interfaces/parameters_RELEASE.tsv`` is made by ``python -m
+``fixtures/interfaces/parameters_RELEASE.tsv.xz`` is made by ``python -m
 tools.interfaces.parameter_tables``; ``parameters_exceptions.tsv`` has kind, subject, path
 and reason, ``parameters_corrected.tsv`` what was wrong once, with its releases.
 """
@@ -29,6 +29,7 @@ from tools.interfaces.parameter_comparison import (
     same,
 )
 from tools.interfaces.parameter_facts import ParameterFact, parameter_lines, read_parameters
+from tools.interfaces.table import read_packed
 
 TABLES = FIXTURES / "interfaces"
 LEAST_FACTS = 1400
@@ -48,7 +49,7 @@ EXCEPTIONS = {
 
 @cache
 def facts(release: str) -> tuple[ParameterFact, ...]:
-    return read_parameters((TABLES / f"parameters_{release}.tsv").read_text())
+    return read_parameters(read_packed(TABLES / f"parameters_{release}.tsv.xz"))
 
 
 @cache
@@ -93,7 +94,7 @@ def test_nothing_was_lost(release: str) -> None:
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_a_table_is_read_as_it_is_written(release: str) -> None:
-    text = (TABLES / f"parameters_{release}.tsv").read_text()
+    text = read_packed(TABLES / f"parameters_{release}.tsv.xz")
     assert "".join(f"{it}\n" for it in parameter_lines(facts(release))) == text
 
 

@@ -209,7 +209,10 @@ def test_the_program_reads_what_it_can(here: Path, capsys: pytest.CaptureFixture
     assert first == "1 file read, 1 cannot be read"
     assert second.startswith("  ./b.urdf:1:8: not well-formed XML")
     assert main(["nowhere"]) == 2
-    assert capsys.readouterr().err == "survey: nowhere: there is no such file or folder\n"
+    assert (
+        capsys.readouterr().err
+        == "survey: nowhere: there is no such file or folder; correct the path\n"
+    )
 
 
 # ---------------------------------------------------------------- real files

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """``python -m tools.interfaces.declared_table TABLES``: ``knowledge/declared.schema``.
 
-TABLES is the folder with ``parameters_RELEASE.tsv``. Of the packages of known nodes, and of each plugin
-of ``plugin_owners.yaml``, each parameter: those of a plugin by their path below its name.
+TABLES is the folder with ``parameters_RELEASE.tsv.xz``. Of the packages of known nodes, and of each
+plugin of ``plugin_owners.yaml``, each parameter: those of a plugin by their path below its name.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.producers.sources.records import Place
 from multibot_rewrite.rules.files.parameter_files import NO_DEFAULT, beyond
 from tools.interfaces.parameter_facts import ParameterFact, read_parameters
+from tools.interfaces.table import read_packed
 
 ID = "<id>."
 HEAD = """\
@@ -121,7 +122,7 @@ def table(folder: Path) -> str:
     """Return the table of a folder's facts."""
     found: dict[Row, dict[str, Place]] = {}
     for release in EVERY:
-        facts = read_parameters((folder / f"parameters_{release}.tsv").read_text())
+        facts = read_parameters(read_packed(folder / f"parameters_{release}.tsv.xz"))
         owners = Counter(package for package, _ in {(it.package, it.owner) for it in facts})
         for fact in facts:
             for row in rows(fact, owners[fact.package] == 1):

@@ -2,7 +2,7 @@
 """``python -m tools.interfaces.parameter_tables TABLES RELEASE FOLDER...``: read sources.
 
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION, with + for a slash in
-REPOSITORY. The tables ``parameters_RELEASE.tsv`` and ``launch_RELEASE.tsv`` are written to TABLES.
+REPOSITORY. ``parameters_RELEASE.tsv.xz`` and ``launch_RELEASE.tsv.xz`` are written to TABLES.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from tools.interfaces.declared_parameters import (
 )
 from tools.interfaces.launch_files import LaunchedNode, launched_nodes
 from tools.interfaces.parameter_facts import PLACE_COLUMNS, ParameterFact, parameter_lines
+from tools.interfaces.table import write_packed
 
 _CPP = (".cpp", ".cc", ".hpp", ".h")
 _LAUNCH = (".py", ".xml", ".yaml", ".yml", ".launch")
@@ -169,13 +170,13 @@ def main(arguments: list[str]) -> int:
         return 2
     parameters = [fact for it in found for fact in parameters_of(it)]
     launches = [fact for it in found for fact in launches_of(it)]
-    _write(given.tables / f"parameters_{given.release}.tsv", parameter_lines(parameters))
-    _write(given.tables / f"launch_{given.release}.tsv", launch_lines(launches))
+    _write(given.tables / f"parameters_{given.release}.tsv.xz", parameter_lines(parameters))
+    _write(given.tables / f"launch_{given.release}.tsv.xz", launch_lines(launches))
     return 0
 
 
 def _write(path: Path, lines: Iterable[str]) -> None:
-    path.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
+    write_packed(path, "".join(f"{line}\n" for line in lines))
 
 
 if __name__ == "__main__":

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import lzma
 from collections.abc import Iterable
+from pathlib import Path
 from typing import NamedTuple
 
 from multibot_rewrite.producers.sources.records import Place
@@ -27,6 +29,16 @@ class Fact(NamedTuple):
 
 
 COLUMNS = (*Place._fields[:-1], *Fact._fields[:-1])
+
+
+def read_packed(path: Path) -> str:
+    """Return the text of a packed table (``xz -d`` shows it)."""
+    return lzma.decompress(path.read_bytes()).decode()
+
+
+def write_packed(path: Path, text: str) -> None:
+    """Write the text of a table, packed."""
+    path.write_bytes(lzma.compress(text.encode(), preset=9 | lzma.PRESET_EXTREME))
 
 
 def to_table(facts: Iterable[Fact]) -> str:

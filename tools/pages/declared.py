@@ -18,6 +18,7 @@ from tools.interfaces.launch_comparison import (
 from tools.interfaces.parameter_comparison import differences, our_parameters
 from tools.interfaces.parameter_facts import ParameterFact, read_parameters
 from tools.interfaces.parameter_tables import read_launches
+from tools.interfaces.table import read_packed
 
 START = "## Parameters and launch files\n"
 _TEXT = """
@@ -45,7 +46,9 @@ _SOURCES = """
 
 def section(tables: Path) -> str:
     """Return the section, from the tables of a folder."""
-    facts = {it: read_parameters(_text(tables / f"parameters_{it}.tsv")) for it in RELEASES}
+    facts = {
+        it: read_parameters(read_packed(tables / f"parameters_{it}.tsv.xz")) for it in RELEASES
+    }
     rows = "".join(_row(tables, release, facts[release]) for release in RELEASES)
     launches = "".join(_launches(tables, release) for release in RELEASES)
     return START + _TEXT + rows + _LAUNCH + launches + _SOURCES + "".join(_versions(facts))
@@ -68,7 +71,7 @@ def _row(tables: Path, release: str, facts: tuple[ParameterFact, ...]) -> str:
 
 def _launches(tables: Path, release: str) -> str:
     """Return the row of a release about launch files."""
-    facts = read_launches(_text(tables / f"launch_{release}.tsv"))
+    facts = read_launches(read_packed(tables / f"launch_{release}.tsv.xz"))
     node_sets = files("multibot_rewrite.knowledge").joinpath("node_sets.yaml").read_text("utf-8")
     left = sum(
         1

@@ -8,7 +8,7 @@ from pathlib import Path
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.node_sets import built_in
 from tools.interfaces.compare import differences, excepted, exceptions_of
-from tools.interfaces.table import from_table
+from tools.interfaces.table import from_table, read_packed
 
 TEXT = """\
 ## Endpoints
@@ -32,7 +32,7 @@ def section(fixtures: Path) -> str:
 
 def _row(fixtures: Path, release: str) -> str:
     tables = fixtures / "interfaces"
-    facts = from_table((tables / f"{release}.tsv").read_text("utf-8"))
+    facts = from_table(read_packed(tables / f"{release}.tsv.xz"))
     exceptions = exceptions_of((fixtures / "interfaces_exceptions.tsv").read_text("utf-8"))
     found = set(differences(facts, built_in(release)))
     left = sum(bool(excepted(it, exceptions)) for it in found)

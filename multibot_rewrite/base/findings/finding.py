@@ -225,7 +225,7 @@ def declare(
 
 
 def rule(code: str, name: str, level: str, **about: Any) -> Callable[[_Check], Rule]:
-    """Make the function that looks for a fault a ``Rule``; ``about`` is as for ``declare``."""
+    """Return a decorator that makes a function a ``Rule``; ``about`` is as for ``declare``."""
     return partial(declare, code, name, level, **about)
 
 
@@ -259,7 +259,7 @@ def rule_page(name: str) -> RulePage:
 
 
 def read_page(text: str) -> RulePage:
-    """Return what a page says. An example of one line has no line end, a longer one has."""
+    """Return the page of a rule, read from the text of its Markdown file."""
     prose, examples, line = [], {}, 1
     lines = iter(text.split("\n"))
     paragraph: list[str] = []

@@ -126,7 +126,7 @@ def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 
 
 def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Yield parameters of the ROS 1 plugin of that name, which the ROS 2 plugin does not read."""
+    """Yield parameters that only the ROS 1 plugin reads, in a plugin of that name for ROS 2."""
     for host in inventory.hosts:
         section = host.node.section
         if section is None or section.type != "plugin" or section.ros != "2":

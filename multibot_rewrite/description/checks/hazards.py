@@ -73,15 +73,15 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         own = any((it.kind, it.text) in naming.own for it in names)
         if claim.site.form in IN_FRONT and not own:
-            yield about(claim, "MB422", _in_front(claim.site.path, claim.value), hint)
+            yield about(claim, "MB422", _message_about_prefix(claim.site.path, claim.value), hint)
     for section, host in _known_plugins(inventory):
         for site in (it for it in section.sites if it.form in IN_FRONT and it.default):
             if host.element.find(site.path) is None:
-                message = _in_front(site.path, site.default)
+                message = _message_about_prefix(site.path, site.default)
                 yield _at_host(host, "MB422", message, hint)
 
 
-def _in_front(path: str, value: str) -> str:
+def _message_about_prefix(path: str, value: str) -> str:
     return f"{path} {value!r} is put in front of names by the plugin, so a postfix cannot be added"
 
 

@@ -175,7 +175,7 @@ def loops(robot: Robot) -> list[list[Joint]]:
         name = start
         while name not in done:
             done.add(name)
-            path[name] = next(it for it in robot.above[name] if _is_edge(it) and it.parent in rest)
+            path[name] = next(it for it in robot.above[name] if _is_valid(it) and it.parent in rest)
             name = path[name].parent
         if name in path:
             found.append(list(path.values())[list(path).index(name) :][::-1])
@@ -184,22 +184,23 @@ def loops(robot: Robot) -> list[list[Joint]]:
 
 def _not_of_a_tree(robot: Robot) -> dict[str, None]:
     """Return the links in loops and below them, in document order."""
-    open_ = {name: sum(map(_is_edge, joints)) for name, joints in robot.above.items()}
+    open_ = {name: sum(map(_is_valid, joints)) for name, joints in robot.above.items()}
     ready = [it for it in robot.below if not open_.get(it)]
     for name in ready:  # grows
-        for joint in filter(_is_edge, robot.below.get(name, ())):
+        for joint in filter(_is_valid, robot.below.get(name, ())):
             open_[joint.child] -= 1
             if not open_[joint.child]:
                 ready.append(joint.child)
     return {name: None for name, count in open_.items() if count}
 
 
-def _is_edge(joint: Joint) -> bool:
+def _is_valid(joint: Joint) -> bool:
+    """Return whether a joint has a parent and another child."""
     return bool(joint.parent) and bool(joint.child) and joint.parent != joint.child
 
 
 def joints_with(robot: Robot, tag: str) -> Iterator[tuple[Joint, _Element]]:
-    """Yield the joints that have an element of this tag, with the element."""
+    """Yield (joint, element) for the joints that have an element of this tag."""
     for joint in robot.joints:
         if tag in joint.parts:
             yield joint, joint.parts[tag]

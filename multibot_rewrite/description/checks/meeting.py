@@ -56,7 +56,7 @@ Said = TypeVar("Said", Problem, Finding)
 
 
 def said_of(robot: str, found: Iterable[Said]) -> Iterator[Said]:
-    """Return findings about a placeholder robot with the name of this one in its place."""
+    """Yield findings about a placeholder robot with the name of this one in its place."""
     for it in found:
         message, hint = it.message.replace(TWIN, robot), it.hint.replace(TWIN, robot)
         yield it._replace(message=message, hint=hint)
@@ -174,7 +174,7 @@ def _differ_in_place_only(reading: Reading, robot: str) -> bool:
 def _of_controllers(
     element: _Element, names: Sequence[RuntimeName], naming: Naming, release: str
 ) -> Problem:
-    """Return the problem of names that a plugin's controllers share, although the plugin has rules."""
+    """Return the problem that a plugin's controllers share names in spite of the plugin's rules."""
     shared = [it.name for it in names]
     message = (
         f"{ALL} have {', '.join(shared)} of their controllers, which take no rules of this plugin "
@@ -204,7 +204,7 @@ GIVEN = {
 
 
 def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
-    """Return the conditions of ``verified``: of controllers and systems of the world; empty if none."""
+    """Return the conditions on which a rewrite with these findings is verified, in words; or ""."""
     codes = {it.code for it in findings}
     said = [words for code, words in GIVEN.items() if code in codes]
     systems = ", ".join(sorted(set(of_world)))

@@ -139,7 +139,7 @@ def _is_unread(element: etree._Element, attribute: str, tree: Tree, nodes: Nodes
 
 
 def is_macro_call(element: etree._Element) -> bool:
-    """Return whether it is a macro call without ``xacro:`` that xacro has left."""
+    """Return whether an element is a macro call without ``xacro:`` that xacro has left."""
     # No parser of a URDF reads an attribute ``parent`` there.
     above = element.getparent()
     is_top = above is not None and above.tag == "robot"

@@ -88,7 +88,7 @@ def _undeclared_code(site: SiteRow, part: NamePart) -> str:
 
 
 def where(claim: Claim) -> str:
-    """Return ``<tag>`` or ``tag@attribute``; that of a parameter has its name."""
+    """Return a claim's place, ``<tag>`` or ``tag@attribute``; a parameter's with its name."""
     tag = str(claim.element.tag)
     if claim.attribute:
         return f"{tag}@{claim.attribute}"
@@ -97,10 +97,7 @@ def where(claim: Claim) -> str:
 
 
 def repeated(inventory: Inventory) -> Iterator[tuple[Claim, Claim]]:
-    """Yield each repeated declaration of a name in a model, with the first one.
-
-    A <gazebo> block may repeat a URDF joint (PR2).
-    """
+    """Yield (repeated, first) declarations of a name in a model; <gazebo> may repeat a joint (PR2)."""
     seen: dict[tuple[int, _Element | None, str], Claim] = {}
     for claim in inventory.claims:
         if claim.site.role != "declares" or claim.site.kinds[0] not in CLOSED_KINDS:
@@ -137,7 +134,7 @@ def ambiguous(inventory: Inventory) -> Iterator[Problem]:
     for claim in inventory.claims if both else ():
         if claim.site.kinds == ("link", "joint") and claim.value in both:
             message = f"{claim.value!r} is both a link and a joint"
-            hint = "a rewrite takes it for the link; SDF refuses such a pair"
+            hint = "rename one: SDF refuses such a pair, a rewrite takes it for the link"
             yield about(claim, "MB203", message, hint)
 
 

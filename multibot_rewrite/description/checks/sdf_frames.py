@@ -70,14 +70,16 @@ class Frames(NamedTuple):
         if it is None:
             return HERE
         if name in below:
-            raise InputError(f"{self.source}: the pose of {name!r} depends on itself")
+            raise InputError(
+                f"{self.source}: the pose of {name!r} depends on itself; correct relative_to"
+            )
         written = it.element.find("pose")
         relative = "" if written is None else written.get("relative_to", "")
         base = it.within(relative or self._attached_to(it))
         return placed(self.pose(base, (*below, name)), written_pose(written))
 
     def _attached_to(self, it: Named) -> str:
-        """Return the name of what it moves with: a joint's child, or ``attached_to``."""
+        """Return what a joint or frame moves with: a joint's child, or ``attached_to``."""
         if it.tag == "joint":
             return it.text("child")
         return it.element.get("attached_to", "") or MODEL

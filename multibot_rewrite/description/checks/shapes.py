@@ -41,7 +41,7 @@ class Extent(NamedTuple):
 
     @property
     def middle(self) -> Vector:
-        """Its centre."""
+        """The centre of the box."""
         return scaled(plus(self.low, self.high), 0.5)
 
 
@@ -257,7 +257,7 @@ def _boxes(file: _File, node: _Element, above: _Rows, visits: Iterator[int]) -> 
 
 
 def _ends(row: Sequence[float], columns: Sequence[Sequence[float]]) -> tuple[float, float]:
-    """Return the least and largest coordinate of all corners along an axis."""
+    """Return (least, largest) coordinate of all corners along an axis."""
     used = [(it, column) for it, column in zip(row, columns, strict=False) if abs(it) > _TINY]
     at = row[3]
     if len(used) == 1:

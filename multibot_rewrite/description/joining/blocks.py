@@ -38,7 +38,7 @@ class Once(NamedTuple):
 
 
 def said_once(joined: Inventory, part: Inventory) -> Once:
-    """Return a part's blocks for the whole robot that are left out: an earlier part has them."""
+    """Return the edits that leave out a part's blocks which an earlier part has, and notes."""
     managers, others = _managers(joined), _managers(part)
     said = {plain(it) for block in _whole_robot_blocks(joined) for it in _child_elements(block)}
     spans, before = Spans(part.document), Spans(joined.document)
@@ -138,8 +138,8 @@ def one_system(joined: Inventory, part: Inventory) -> Once:
 
 def like(system: _Element, root: _Element) -> Iterator[_Element]:
     """Yield the systems with the type and hardware of another one."""
-    wanted = _type_and_hardware(system)
-    yield from (it for it in root.iterchildren(_SYSTEM) if _type_and_hardware(it) == wanted)
+    wanted = _system_key(system)
+    yield from (it for it in root.iterchildren(_SYSTEM) if _system_key(it) == wanted)
 
 
 def driven(system: _Element) -> Sequence[_Element]:
@@ -154,7 +154,7 @@ def has_all(system: _Element, others: Iterable[_Element]) -> bool:
     return any(all(it in own for it in wanted) for own in every)
 
 
-def _type_and_hardware(system: _Element) -> tuple[object, ...]:
+def _system_key(system: _Element) -> tuple[object, ...]:
     found = [plain(it) for it in system.iterchildren(_HARDWARE)]
     return system.get("type", ""), tuple(sorted(found, key=repr))
 

@@ -117,9 +117,9 @@ def _part_of_item(item: YamlItem, folder: str) -> Part:
     pose = {key: number(word(it, key)) for key, it in table_of(at, "pose").items()}
     given: dict[str, Any] = {key: word_of(keys, key) for key in ("prefix", "name")}
     given |= {
-        key: _path_from(word_of(keys, key), folder) for key in ("description", "srdf", "rviz")
+        key: _path_below(word_of(keys, key), folder) for key in ("description", "srdf", "rviz")
     }
-    given |= {key: [_path_from(it, folder) for it in words_of(keys, key)] for key in BESIDE}
+    given |= {key: [_path_below(it, folder) for it in words_of(keys, key)] for key in BESIDE}
     given["one_system"] = flag_of(keys, "one_system")
     given["at"] = {"parent": word_of(at, "parent"), "pose": pose}
     given["arguments"] = {
@@ -159,5 +159,5 @@ def _as_list(value: str | Sequence[str]) -> Sequence[str]:
     return [value] if isinstance(value, str) else value
 
 
-def _path_from(path: str, folder: str) -> str:
+def _path_below(path: str, folder: str) -> str:
     return os.path.normpath(os.path.join(folder, path)) if path else ""

@@ -53,12 +53,12 @@ class KeptText(NamedTuple):
 
 
 def is_joined(text: bytes) -> bool:
-    """Return whether it has a comment of a join."""
+    """Return whether a text has a comment of a join."""
     return _OURS.search(text) is not None
 
 
 def is_joined_whole(text: bytes) -> bool:
-    """Return whether it is the result of a join."""
+    """Return whether a text is the result of a join."""
     return _BASE.search(text) is not None
 
 
@@ -68,7 +68,7 @@ def without_marks(text: bytes) -> bytes:
 
 
 def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
-    """Return the edit that replaces ``old`` by ``new``, and keeps ``old`` in a comment."""
+    """Return the edit that puts ``new`` between two offsets, and keeps ``old`` in a comment."""
     kept = b"<!-- multibot was %d %s -->" % (bool(new), _escaped(old))
     return Edit(start, end, kept + new, None)
 
@@ -113,7 +113,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     before = b"".join(cut(text, edits))
     mark = _BASE.search(before)
     if mark is None:
-        raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
+        raise InputError(f"{file}: multibot join did not make it; name the file that it wrote")
     found, last = [], mark.end()
     while part := _PART.match(before, last):
         name, prefix, materials, head = (word or b"" for word in part.groups())
@@ -122,7 +122,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
         stop = before.find(b" -->\n", close + len(end))
         if close < 0 or stop < 0:
             what = f"the comment at the end of part {name.decode()!r} was edited by hand"
-            raise InputError(f"{file}: {what}")
+            raise InputError(f"{file}: {what}; join the parts again")
         tail = before[close + len(end) : stop]
         whole = _unescaped(head) + before[part.end() : close] + _unescaped(tail)
         names = tuple(unquote(it) for it in materials.decode().split(",") if it)

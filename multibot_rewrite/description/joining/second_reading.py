@@ -76,7 +76,7 @@ def _tags_and_names(root: _Element) -> Iterator[tuple[str, str]]:
 
 
 def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
-    """Return whether an element in the whole replaces an element of a part."""
+    """Return whether an element of a part needs no copy: another in the whole text stands for it."""
     name = it.get("name", "")
     of_world = {"link": name, "gazebo": it.get("reference", "")}.get(str(it.tag)) == WORLD
     if mounted.is_without_world and of_world:

@@ -57,7 +57,7 @@ def renamed_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSema
     declared = declarations(part.data, part.file, tree)
     found = collect(read_document(data, file), tree, declared)
     if found.format != SRDF:
-        raise InputError(f"{file}: it is <{found.document.root.tag}> of a URDF, not an SRDF")
+        raise InputError(f"{file}: it is <{found.document.root.tag}> of a URDF; name an SRDF")
     if not part.prefix:
         return PartSemantics(part, data, file)
     kinds = (*PREFIXED, "group")
@@ -122,7 +122,7 @@ def xml_text(root: _Element) -> bytes:
 
 
 def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[tuple[str, str]]:
-    """Yield pairs of links of two parts with nothing that has a shape between them."""
+    """Yield pairs of links of two parts that touch by links without shapes alone."""
     joints = described.iterchildren("joint")
     ends = [(end_of(it, "parent"), end_of(it, "child")) for it in joints]
     beside = sets_by_key((*ends, *((child, parent) for parent, child in ends)))

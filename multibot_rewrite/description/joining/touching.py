@@ -80,11 +80,12 @@ def _scene(
         shapes = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION)
     except (ValueError, RuntimeError) as error:
         reason = " ".join(str(error).split())
-        raise InputError(f"pinocchio does not read the joined description: {reason}") from None
+        raise InputError(f"pinocchio refuses it, leave out samples: {reason}") from None
     numbers = _numbered(pin, model, shapes, pairs)
     data, placed = model.createData(), shapes.createData()
 
     def touch(random: Random, left: Sequence[Pair]) -> Mapping[Pair, bool]:
+        """Return which of the pairs that are ``left`` touch in a new random pose."""
         pin.updateGeometryPlacements(model, data, shapes, placed, _pose(pin, model, random))
         return {
             it: any(pin.computeCollision(shapes, placed, at) for at in numbers.get(it, ()))
@@ -122,7 +123,7 @@ def _pose(pin: Any, model: Any, random: Random) -> Any:
 
 
 def _with_files(root: _Element, files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Set paths in collision meshes; yield links with missing files, without these shapes."""
+    """Set paths in collision meshes; yield (link, file) of missing ones, without these shapes."""
     for link in root.iterchildren("link"):
         name = link.get("name", "")
         for it in link.findall("visual"):

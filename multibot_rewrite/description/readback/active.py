@@ -50,6 +50,7 @@ def plugin_section(
 
 
 def _definition_keys(plugin: _Element) -> Iterator[str]:
+    """Yield the names under which a plugin may have a definition: library, class, type."""
     library = plugin.get("filename", "").strip().rpartition("/")[2].removeprefix("lib")
     name = _ENDING.sub("", library)
     system = _SYSTEM.fullmatch(name)
@@ -125,7 +126,7 @@ class ActivePart(NamedTuple):
 
     @property
     def is_known(self) -> bool:
-        """Return whether it is known what it opens."""
+        """Return whether a definition says what the part opens."""
         return self.section is not None and says_what_it_opens(self.section)
 
     @property
@@ -141,7 +142,7 @@ class ActivePart(NamedTuple):
 
     @property
     def is_apart(self) -> bool:
-        """Return whether all that it opens, besides names in values, is below a namespace."""
+        """Return whether all that a part opens, besides names in values, is below a namespace."""
         words = self.section.opens if self.section else ()
         return {NAMESPACE} == {it for it in words if not split_opens(it).path}
 
@@ -180,7 +181,7 @@ def plugin_name(plugin: _Element) -> str:
 
 
 def _is_simulated(sensor: _Element) -> bool:
-    """Return whether it is a sensor of Gazebo, not of urdfdom or ros2_control."""
+    """Return whether a sensor is Gazebo's, not urdfdom's or ros2_control's."""
     parent = sensor.getparent()
     if parent is None or parent.tag in ("robot", "ros2_control"):
         return False
@@ -197,7 +198,7 @@ def says_what_it_opens(section: PluginDefinition) -> bool:
 
 
 def opened(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, str]]:
-    """Yield kind, text and parameter of what a part opens: addresses, files, unlisted names."""
+    """Yield (kind, text, parameter) of what a part opens: addresses, files, unlisted names."""
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
     if TRANSFORMS in section.opens:
@@ -220,5 +221,5 @@ def opened(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str
 
 
 def is_device(text: str) -> bool:
-    """Return whether this is the name of a computer's device, whatever parameter has it."""
+    """Return whether a text is the name of a computer's device, whatever parameter has it."""
     return _DEVICE.fullmatch(text) is not None

@@ -76,10 +76,7 @@ class Meeting(NamedTuple):
 
 
 def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Iterator[RuntimeName]:
-    """Yield the names that do not contain ``word``, the robot's name.
-
-    Each name once, at its first place.
-    """
+    """Yield the names that do not contain ``word``, the robot's name, each at its first place."""
     seen: set[tuple[str, str]] = set()
     for it in _own(names, naming):
         if word not in it.name and (it.kind, it.name) not in seen:
@@ -210,7 +207,7 @@ def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
 
 
 def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, RuntimeName]]:
-    """Yield each end that lost the topic of the first end, with that one, as they are now."""
+    """Yield (end, first end) where both had one topic before, and have two now."""
     now = _by_place((*after.names, *after.other_ends))
     was = _by_place((*before.names, *before.other_ends))
     of_topic = lists_by_key(((it.kind, it.name), at) for at, it in was.items() if at in now)
@@ -220,7 +217,7 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
 
 
 def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str, str]]:
-    """Yield each image that lost its camera_info, with the wanted name and the present one."""
+    """Yield (image, wanted name, present name) of each image that lost its camera_info."""
     # A viewer replaces the last segment of an image's topic (image_common camera_common.cpp
     # getCameraInfoTopic; RViz and image_pipeline subscribe with it).
     now = _by_place(after.names)
@@ -242,6 +239,7 @@ def _camera_info_topic(topic: str) -> str:
 
 
 def _by_place(names: Iterable[RuntimeName]) -> Mapping[Place, RuntimeName]:
+    """Return topics and services by their place: element, path, kind, and a count of equal ones."""
     found: dict[Place, RuntimeName] = {}
     seen: Counter[tuple[str, int, str, str]] = Counter()
     for it in names:

@@ -66,7 +66,7 @@ class RuntimeName(NamedTuple):
     off: str = ""
 
     def element_in(self, root: _Element) -> _Element:
-        """Return its element in a text with the same elements, or else the root."""
+        """Return the name's element in a text with the same elements, or else the root."""
         return next(islice(root.iter(self.tag), self.number, None), root)
 
 
@@ -185,7 +185,7 @@ def _turns_on(joint: _Element | None) -> bool:
 
 
 def itself(node: ReadNode) -> BoundNode:
-    """Return the node after its rules for name and namespace."""
+    """Return a plugin's node under its final name and namespace, without rules for topics."""
     rules = (it.rule for it in node.rules if it.rule.source.startswith("__"))
     return _bound(node.name, node.namespace, rules)
 
@@ -274,7 +274,7 @@ def _endpoints(
 def _asked_for(
     plugin: _Element, section: PluginDefinition, rules: tuple[ReadRule, ...]
 ) -> Iterator[tuple[str, str, str, str, str, str]]:
-    """Yield kind, role, name, parameter and type of what a node asks for, and what would enable it."""
+    """Yield (kind, role, name, parameter, type, what would enable it) of what a node asks for."""
     off = switched_off(plugin, section)
     wired = list(wired_of(plugin, section))
     named = {it.name for it, _ in wired}
@@ -292,18 +292,18 @@ def _asked_for(
 
 
 def holds_topic(site: SiteRow) -> bool:
-    """Return whether its value is a topic or service, or topics are below it."""
+    """Return whether a site's value is a topic or service, or topics are below it."""
     whole = site.form == "whole" and site.role != "keep" and site.when != SENT
     return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
 
 
 def is_of_others(site: SiteRow) -> bool:
-    """Return whether its value is a topic that is not the robot's own: the world's, or one kept."""
+    """Return whether a site's value is a topic that is not the robot's: the world's, or one kept."""
     return site.when == SENT or (site.role == "keep" and "topic" in site.path.lower())
 
 
 def frames_of(plugin: _Element, section: PluginDefinition) -> Iterator[tuple[str, str]]:
-    """Yield the frames in the parameters of a plugin, each with the parameter."""
+    """Yield (frame, parameter) for the frames in the parameters of a plugin."""
     for site in section.sites:
         if site.form == "whole" and site.kinds[:1] == ("frame",):
             for value in values_of(plugin, site):

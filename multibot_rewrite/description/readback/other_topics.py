@@ -41,7 +41,7 @@ OF_GZ = frozenset({"sensor", "particle_emitter"})
 def resolved(
     host: _Element, section: PluginDefinition, release: str
 ) -> Iterator[tuple[str, str, str]]:
-    """Yield kind, name and parameter of the topics of something that is no ROS 2 node."""
+    """Yield (kind, name, parameter) of the topics of something that is no ROS 2 node."""
     # Those named after the model are left out: each robot has its own.
     above = _namespace(host, section)
     if reads_it(section, release) and scoped_namespace(host) != "":
@@ -76,7 +76,7 @@ def resolved(
 
 
 def of_others(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str]]:
-    """Yield name and parameter of topics that are the world's or unchanged, below its namespace."""
+    """Yield (name, parameter) of topics that are the world's or unchanged, below its namespace."""
     # The model's name may also be before a slash (rotors_simulator gazebo_mavlink_interface.cpp).
     # One without a name gets it from its spawner.
     model = around(host).get("name") or "~"
@@ -125,7 +125,7 @@ def _join(above: str, name: str) -> str:
 
 
 def reads_it(section: PluginDefinition, release: str) -> bool:
-    """Return whether this system puts the namespace of its model in front, in ``release``."""
+    """Return whether a system puts the namespace of its model in front, in ``release``."""
     return bool(section.model_namespace) and has_release(section.model_namespace, release)
 
 

@@ -98,22 +98,23 @@ def sends_odometry(host: _Element, section: PluginDefinition) -> bool:
 
 
 def _switches(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, bool]]:
-    """Yield parameter, topic and whether it is on, for each switch of a plugin's topics."""
+    """Yield (parameter, topic, is the switch on) for each switch of a plugin's topics."""
     for switch in section.switches:
         parameter, topic, *usual = switch.split("=")
         yield parameter, topic, is_on(child_text(host, parameter), usual=bool(usual))
 
 
 def _text_for_slot(host: _Element, word: str) -> str:
+    """Return the text for ``{word}`` in a default: link, sensor, model or a child's; "" if missing."""
     if word == "link":
-        return _root_link_name(host)
+        return _first_link_name(host)
     if word == "sensor":
         sensor = next(host.iterancestors("sensor"), None)
         return sensor.get("name", "") if sensor is not None else ""
     return MODEL[:-1] if word == "model" else child_text(host, word) or ""
 
 
-def _root_link_name(host: _Element) -> str:
+def _first_link_name(host: _Element) -> str:
     model = around(host)
     if model.tag == "model":
         every = (it.get("name", "") for it in model.iter("link"))
@@ -143,7 +144,7 @@ def wired_of(plugin: _Element, section: PluginDefinition) -> Iterator[tuple[Wire
 
 
 def filled(plugin: _Element, section: PluginDefinition, name: str) -> Iterator[str]:
-    """Yield the name with each value of the paths in its braces."""
+    """Yield the name with each value that the plugin has for ``{path}`` in it."""
     head, slot, rest = name.partition("{")
     if not slot:
         yield name

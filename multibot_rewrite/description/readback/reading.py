@@ -54,7 +54,7 @@ class _Host(NamedTuple):
 
 
 def read(data: bytes, file: str, definitions: Definitions) -> Reading:
-    """Read a description as the programs do that load it; raises InputError."""
+    """Return the names that programs make of a description; raises InputError."""
     return read_tree(read_xml(data, file), definitions)
 
 
@@ -86,7 +86,7 @@ def read_tree(root: _Element, definitions: Definitions) -> Reading:
 def transforms_sent(
     root: _Element, definitions: Definitions
 ) -> Iterator[tuple[_Element, str, str]]:
-    """Yield the plugins that send a transform of odometry, with the frames of parent and child."""
+    """Yield (plugin, parent, child) for each plugin that sends a transform of odometry."""
     hosts, _ = _hosts(root, definitions)
     senders = {it.number: it for it in hosts if "/tf" in it.section.publishes}
     for node in _ros_nodes(senders.values(), definitions.release):
@@ -96,7 +96,7 @@ def transforms_sent(
 
 
 def _hosts(root: _Element, definitions: Definitions) -> tuple[list[_Host], list[tuple[int, str]]]:
-    """Return the plugins with a definition, and those without one."""
+    """Return the plugins with a definition, and (number, name) of those without one."""
     hosts: list[_Host] = []
     unknown: list[tuple[int, str]] = []
     for number, plugin in enumerate(root.iter("plugin")):
@@ -175,6 +175,7 @@ def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:
 def _other_names_of_hosts(
     root: _Element, hosts: list[_Host], tag: str, nodes: Container[int], definitions: Definitions
 ) -> Iterator[RuntimeName]:
+    """Yield the names of plugins that no ROS 2 node asks for: gz topics, frames, look-ups, files."""
     for host in hosts:
         if host.number not in nodes or _is_of_either(host):
             yield from _topics(host, tag, definitions.release)

@@ -74,7 +74,7 @@ def plain(element: _Element) -> tuple[object, ...]:
 
 
 def is_on(text: str | None, usual: bool) -> bool:
-    """Return the value of a boolean parameter: case does not count; any other text gives ``usual``."""
+    """Return what a text sets a boolean parameter to; a text that is none gives ``usual``."""
     known = {"true": True, "1": True, "false": False, "0": False}
     return known.get((text or "").strip().lower(), usual)
 

@@ -200,6 +200,7 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
 
 
 def _position(inventory: Inventory, start: int, attribute: str, value: str) -> tuple[int, int]:
+    """Return line and column of a value, or of its element."""
     source = inventory.document.source
     slot = value_slot(source, start, attribute, value) if value else None
     return locate(source, slot[0] if slot else start)

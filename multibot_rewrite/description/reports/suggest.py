@@ -125,7 +125,7 @@ def _is_header(type_: str, name: str) -> bool:
 def _values(
     element: "_Element", node: tree.TreeNode | None, path: str
 ) -> Iterator[tuple[str, str]]:
-    """Yield path and value of every attribute and text below an element that no row is about."""
+    """Yield (path, value) of every attribute and text below an element that no row is about."""
     known = {""} if node is not None and node.text is not None else set()
     if node is not None:
         known |= {attribute for attribute, _ in node.attributes} | node.keeps.keys()
@@ -191,6 +191,7 @@ def tag_kind(path: str) -> str:
 
 
 def _guess_value(value: str, word: str, declared: Declared) -> Guess | None:
+    """Return the guess by the value, or by the word of its tag; None for no name."""
     by_value = _by_value(value, declared)
     if by_value is None or (word in _GRAPH and by_value.form != "remap"):
         return _by_tag(value, word)
@@ -208,20 +209,20 @@ def _by_value(value: str, declared: Declared) -> Guess | None:
     for form, names in _readings(value):
         found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
         if named := [(kind, name) for kind, name in found.items() if name]:
-            return Guess(tuple(kind for kind, _ in named), form, _held_names_text(value, named))
+            return Guess(tuple(kind for kind, _ in named), form, _names_in_words(value, named))
     if value.startswith("/") and value[1:] in declared["link"]:
         return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")
     return None
 
 
-def _held_names_text(value: str, named: Sequence[tuple[str, str]]) -> str:
+def _names_in_words(value: str, named: Sequence[tuple[str, str]]) -> str:
     if all(name == value for _, name in named):
         return f"{shown(value)} is a {' and a '.join(kind for kind, _ in named)} here"
     return f"{shown(value)} holds {' and '.join(f'the {k} {shown(name)}' for k, name in named)}"
 
 
 def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
-    """Yield the forms that a value may have, each with the names in it."""
+    """Yield (form, names) for each form that a value may have."""
     yield "whole", [value]
     if _NO_NAME.match(value):
         return

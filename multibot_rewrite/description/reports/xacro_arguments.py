@@ -86,18 +86,18 @@ class Argument(NamedTuple):
 
     @property
     def is_empty(self) -> bool:
-        """Return whether it names no robot by default. Raises nothing."""
+        """Return whether the argument names no robot by default. Raises nothing."""
         return self.default.strip(_SEPARATORS) in _NOTHING
 
     @property
     def is_everywhere(self) -> bool:
-        """Return whether it is in every link and joint. Raises nothing."""
+        """Return whether the argument is in every link and joint. Raises nothing."""
         parts = [use for use in self.uses if use.kind in PARTS]
         return bool(parts) and all(use.names == use.total for use in parts)
 
     @property
     def is_space(self) -> bool:
-        """Return whether it is the namespace of every plugin, and in no other name. Raises nothing."""
+        """Return whether the argument is every plugin's namespace, and in no other name."""
         called = bool(self.uses) and _SPACE.fullmatch(self.name) is not None
         return called and all(
             (use.kind, use.how, use.names) == ("namespace", WHOLE, use.total) for use in self.uses
@@ -189,6 +189,7 @@ def _links_and_joints(inventory: Inventory) -> frozenset[str]:
 
 
 def _uses_of_mark(inventory: Inventory) -> Iterator[Use]:
+    """Yield how an argument, in place of which the mark is, is used in each kind of names."""
     every = chain.from_iterable(inventory.names)
     names = dict.fromkeys((it.kind or it.kinds[0], it.text) for it in every)
     totals = Counter(kind for kind, _ in names)
@@ -199,7 +200,7 @@ def _uses_of_mark(inventory: Inventory) -> Iterator[Use]:
 
 
 def _shape_of(text: str) -> tuple[str, str]:
-    """Return where in a name the argument is, and the separator next to it."""
+    """Return where in a name the argument is (whole, inside, prefix, postfix), and the separator."""
     before, _, after = text.strip("/").partition(_MARK)
     if not before and not after:
         return WHOLE, ""

@@ -51,7 +51,7 @@ def _scopes(names: list[str], declared: Declared, respell: Respell) -> Iterator[
 
 
 def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
-    """Return the old generated name -> the new one, for every collision of the description."""
+    """Return by old generated name the new one, for every collision of the description."""
     links = {link.get("name", ""): link for link in root.iterchildren("link")}
     lumped = _lumped(root)
     merged_away = {child for children in lumped.values() for _, child in children}
@@ -87,7 +87,7 @@ def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tupl
 
 
 def _lumped(root: etree._Element) -> Lumped:
-    """Return parent link -> (joint, child link) of the fixed joints that are merged."""
+    """Return by parent link (joint, child link) of the fixed joints that are merged."""
     kept = kept_joints(root)
     lumped = defaultdict(list)
     for joint in root.iterchildren("joint"):

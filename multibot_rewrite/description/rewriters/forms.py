@@ -95,6 +95,7 @@ def is_included(model: str, declared: Declared) -> bool:
 
 
 def _names_with_starts(value: str) -> Iterator[tuple[int, str]]:
+    """Yield (offset, name) of each part between ``::``."""
     at = len(value) - len(value.lstrip())
     for name in value.strip().split("::"):
         if name:
@@ -133,7 +134,7 @@ def member(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]
 
 
 def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[NamePart], int]:
-    """Return the models before ``::`` and the longest declared name, and the start of the rest."""
+    """Return the models before ``::`` and the longest declared name; and where the rest starts."""
     # Text before the first declared model is a world.
     at = len(value) - len(value.lstrip())
     parts = []
@@ -162,7 +163,7 @@ def regex(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
 
 
 def _alternatives(value: str) -> Iterator[tuple[int, str]]:
-    """Yield the pieces between top-level bars, without anchors and white space, and their starts."""
+    """Yield (offset, text) of the pieces between top-level bars, without anchors and blanks."""
     depth, begin = 0, 0
     bars = []
     from multibot_rewrite.description.rewriters.patterns import pieces_of  # few values are patterns
@@ -225,6 +226,7 @@ def of_names(form: Form) -> Form:
     """Return the form for values as long as names are; a longer one is an undeclared name."""
 
     def bounded(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+        """Return what ``form`` does; for a value longer than names are, one undeclared name."""
         if len(value) > LONGEST:
             return tuple(it._replace(closed=True) for it in whole(value, kinds, declared))
         return form(value, kinds, declared)

@@ -52,7 +52,7 @@ class Insertion(NamedTuple):
 
     @property
     def filled(self) -> etree._Element | None:
-        """The element that is there and empty."""
+        """The empty element that gets the text; None if an element is inserted."""
         return self.parent.find(query(self.step)) if self.step else None
 
 

@@ -122,11 +122,11 @@ def definitions_files(package: str) -> list[str]:
     """
     top, *below = package.split(".")
     if not all(word.isidentifier() for word in (top, *below)):
-        raise DefinitionsError(f"{package!r} is not the name of a package")
+        raise DefinitionsError(f"{package!r} is no package's name; write it as in an import")
     places = [os.path.join(place, *below) for place in _places(top)]
     folders = [place for place in places if os.path.isdir(place)]
     if not folders:
-        raise DefinitionsError(f"there is no package {package!r}")
+        raise DefinitionsError(f"there is no package {package!r}; install it, or correct the name")
     files = [os.path.join(f, name) for f in folders for name in _definition_files(f)]
     if not files:
         raise DefinitionsError(f"no *.vocab file in {folders[0]}, is it in the package data?")
@@ -148,4 +148,4 @@ def _definition_files(folder: str) -> list[str]:
     try:
         return sorted(name for name in os.listdir(folder) if name.endswith(".vocab"))
     except OSError as error:
-        raise DefinitionsError(f"{folder} cannot be read: {error.strerror}") from None
+        raise DefinitionsError(f"{folder} cannot be read, permit it: {error.strerror}") from None

@@ -103,7 +103,7 @@ def _stem_site(site: SiteRow) -> SiteRow:
 
 
 def stands_below(claim: Claim) -> bool:
-    """Return whether a model around this value has a namespace. The root is none."""
+    """Return whether a model around a claimed value has a namespace. The root is none."""
     element: _Element | None = claim.element
     if is_model_namespace(claim.site) and not claim.attribute:
         element = claim.element.getparent()

@@ -33,7 +33,7 @@ Hosts = Iterable[tuple[etree._Element, PluginDefinition]]
 
 
 def default_of(host: etree._Element, default: str, naming: Naming) -> str:
-    """Return what a plugin takes if the site is absent: a literal, or made from another topic."""
+    """Return the value that a plugin takes for an absent site: a literal, or from another topic."""
     conditions, asked, default = default.rpartition("?")
     if asked and not all(_condition_holds(host, condition) for condition in conditions.split(",")):
         return ""
@@ -60,6 +60,7 @@ def filled(host: etree._Element, default: str) -> str:
 
 
 def _own_name_for(host: etree._Element, word: str) -> str:
+    """Return the text for ``{word}`` in a default: model, sensor, first link, or a child's; or ""."""
     if word == "model":
         return MODEL[:-1]
     if word == "sensor":
@@ -113,12 +114,12 @@ def _of_model(section: PluginDefinition) -> list[SiteRow]:
 # As sdformat reads booleans (Param.cc, ValueFromStringImpl): case and white space around do not
 # count, any other text leaves the default.
 def is_true(text: str) -> bool:
-    """Return whether this text of a parameter turns it on."""
+    """Return whether a text turns a parameter on."""
     return text.strip().lower() in ("true", "1")
 
 
 def is_false(text: str) -> bool:
-    """Return whether this text of a parameter turns it off."""
+    """Return whether a text turns a parameter off."""
     return text.strip().lower() in ("false", "0")
 
 

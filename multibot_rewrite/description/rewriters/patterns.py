@@ -143,6 +143,7 @@ def _parse_sequence(pieces: deque[str], depth: int) -> _Piece:
 
 
 def _parse_atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
+    """Return a function that adds the states for a character, class, anchor or group."""
     if piece in ("(", "(?:"):
         inner = _parse_alternatives(pieces, depth + 1)
         if not pieces:
@@ -160,6 +161,7 @@ def _parse_atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
 
 
 def _add_state(states: list[_State], over: frozenset[str] | str | None, *behind: int) -> int:
+    """Add a state that leads over a character to those ``behind``; return its number."""
     if len(states) > _STATES:
         raise PatternError("too much is repeated")
     states.append((over, behind))

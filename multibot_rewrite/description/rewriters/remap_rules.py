@@ -141,7 +141,7 @@ def _flag(argument: etree._Element) -> str:
 
 
 def _asked_names(host: etree._Element, section: PluginDefinition) -> Iterator[_Asked]:
-    """Yield the names in its code without a parameter, and the parameters that hold names."""
+    """Yield the names in a node's code without a parameter, and those that its parameters hold."""
     yield from (_Asked(name, "") for name in section.topics)
     for site in section.sites:
         if site.role == "uses" and site.form == "whole" and site.kinds[0] in HELD:
@@ -153,6 +153,7 @@ def _asked_names(host: etree._Element, section: PluginDefinition) -> Iterator[_A
 
 
 def _names_in_rule(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
+    """Yield the names in a claimed remap rule: its target, and its left side if it is this node's."""
     if claim.site.form == "argument" and _flag(claim.element) not in ("", *_REMAPS):
         return
     yield from remap(claim.value, claim.site.kinds, {})

@@ -117,6 +117,7 @@ class TreeNode:
             node.text = claim
 
     def _child_for_step(self, step: str, active: bool) -> TreeNode:
+        """Return the node below for a step of a path, made if it is missing."""
         tag, attribute, value = split_step(step)
         tag = qualified(tag)
         child = self.children.setdefault(tag, TreeNode())
@@ -128,6 +129,7 @@ class TreeNode:
         return child.values.setdefault(value, TreeNode())
 
     def _node_by_value(self, element: _Element) -> TreeNode:
+        """Return the node for the value of an element's ``asked`` attribute, or this node."""
         return self.values.get(element.get(self.asked, ""), self)
 
 
@@ -176,6 +178,7 @@ class Tree:
         return max(found, key=lambda name: len(self.formats[name].children.keys() & tags))
 
     def _element_node(self, element_name: str) -> TreeNode:
+        """Return the node of a section for an element, with those below it."""
         (section,) = self.definitions.find("element", element_name)
         node = TreeNode(section, section.sites)
         if section.select:
@@ -201,6 +204,7 @@ class Tree:
                     waiting += [child, *child.values.values()]
 
     def _node_selector(self, base: TreeNode, type_: str) -> Callable[[_Element], TreeNode]:
+        """Return a function that gives for an element the node of its own section, or ``base``."""
         keys = SELECTORS[type_]
 
         def select(element: _Element) -> TreeNode:
@@ -213,6 +217,7 @@ class Tree:
         return select
 
     def _node_with_section(self, base: TreeNode, section: PluginDefinition) -> TreeNode:
+        """Return a node with what ``base`` and the section have, made once."""
         assert base.section is not None
         key = (base.section.names[0], section.file, section.line)
         found = self._chosen.get(key)
@@ -226,7 +231,7 @@ class Tree:
 
 
 def _is_gz_sim_class(element: _Element, key: str, section: PluginDefinition) -> bool:
-    """Return whether it is a gz-sim class in a library with a name of Gazebo Classic's."""
+    """Return whether an element loads a gz-sim class from a library named like Gazebo Classic's."""
     # In Classic the name is that of a node.
     of_node = any(it.path == "@name" and it.role == "declares" for it in section.sites)
     return of_node and "::" in element.get("name", "") and not key.startswith("gazebo_ros")

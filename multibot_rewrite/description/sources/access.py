@@ -54,7 +54,8 @@ class Access:
         self.beside = {os.path.dirname(it) for it in _real_paths(path)}
         self.roots = [real_path(it) for it in (*_own_folders(path), *reach.roots)]
         self.sourced = [
-            os.path.abspath(it) for it in (*_ros_prefixes(), *_paths_in("ROS_PACKAGE_PATH"))
+            os.path.abspath(it)
+            for it in (*_ros_prefixes(), *_paths_in_variable("ROS_PACKAGE_PATH"))
         ]
 
     def readable(self, name: str) -> str:
@@ -168,7 +169,7 @@ def _is_there(path: str) -> bool:
 
 @outside
 def _real_paths(path: str) -> tuple[str, str]:
-    """Return a file with the links of its folder resolved, and the file that it is a link to."""
+    """Return (path in the real folder, real path) of a file, which may be a link."""
     folder, name = os.path.split(os.path.abspath(path))
     return os.path.join(os.path.realpath(folder), name), os.path.realpath(path)
 
@@ -218,10 +219,10 @@ def _is_below(path: str, folder: str) -> bool:
 
 
 def _ros_prefixes() -> list[str]:
-    return _paths_in("AMENT_PREFIX_PATH")
+    return _paths_in_variable("AMENT_PREFIX_PATH")
 
 
-def _paths_in(name: str) -> list[str]:
+def _paths_in_variable(name: str) -> list[str]:
     return [it for it in (variable(name) or "").split(os.pathsep) if it]
 
 

@@ -130,6 +130,7 @@ def _answered(it: XacroChild, sources: Sources) -> bytes:
 
 
 def _answer_to(data: bytes, sources: Sources) -> bytes:
+    """Return the frame that answers a child's question, or tells it the error."""
     what, name = load_json(data)
     access = sources.access
     ways: Mapping[str, Callable[[str], bytes]] = {
@@ -196,6 +197,7 @@ def _to_text(value: object) -> str:
 
 
 def _checked_numbers(data: bytes, together: int) -> array[int]:
+    """Return the numbers in a frame; raises GarbageError unless they are ``together`` at a time."""
     found = array(frames.NUMBER)
     found.frombytes(data)
     if len(found) % together:

@@ -48,7 +48,7 @@ def robot_instead(file: str) -> str:
 
 
 def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> dict[str, set[str]]:
-    """Return for each of some files those of them that include it."""
+    """Return by file those of the other files that include it."""
     # A name that is ``composed``, as ``${arm}_macro.xacro``, may be that of several files.
     paths: list[str] = []
     named: dict[str, list[tuple[str, str]]] = {}

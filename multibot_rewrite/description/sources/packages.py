@@ -37,10 +37,7 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
 
 @outside
 def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
-    """Return the folder of $(find NAME) in ``file``; empty if there is none.
-
-    Other packages in the same repository are found as well.
-    """
+    """Return the folder of $(find NAME) in ``file``, also in its repository; empty if there is none."""
     known = package_folders(name, file, roots)
     own = _own_package(os.path.dirname(os.path.abspath(file)))
     if known or own is None or ".git" in entries(own[1]):
@@ -116,7 +113,7 @@ def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
 
 
 def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
-    """Yield folders breadth first, each with whether it is a package, where the search ends."""
+    """Yield (folder, whether it is a package) breadth first; nothing below a package."""
     waiting = deque((os.path.abspath(root), 0) for root in roots)
     for _ in range(MOST_FOLDERS):
         if not waiting:
@@ -210,7 +207,7 @@ def in_sources(path: str) -> str:
 
 @lru_cache(maxsize=64)
 def _installed(folder: str) -> tuple[tuple[str, str], ...]:
-    """Return the files and folders that a package's CMakeLists.txt installs, with their paths."""
+    """Return (source, installed path) of what a package's CMakeLists.txt installs."""
     lines = _start_of(os.path.join(folder, "CMakeLists.txt"), _LONGEST).decode("utf-8", "replace")
     text = " ".join(line.partition("#")[0] for line in lines.splitlines())
     calls = (it.partition(")")[0].replace('"', " ").split() for it in text.split("install(")[1:])
@@ -218,7 +215,7 @@ def _installed(folder: str) -> tuple[tuple[str, str], ...]:
 
 
 def _of_install(folder: str, words: list[str]) -> Iterator[tuple[str, str]]:
-    """Yield the sources and targets of one ``install(DIRECTORY a b/ DESTINATION c)``."""
+    """Yield (source, target) of one ``install(DIRECTORY a b/ DESTINATION c)``."""
     if words[:1] not in (["DIRECTORY"], ["FILES"]) or words[-1:] == ["DESTINATION"]:
         return
     at = words.index("DESTINATION") if "DESTINATION" in words else 0

@@ -103,7 +103,7 @@ class XacroChild:
         return left
 
     def end(self, ended: bool = False) -> int:
-        """End it; return the signal if it had ended by itself, or 0."""
+        """End the child; return the signal if it had ended by itself, or 0."""
         if self.signal is None:
             self.ours.close()
             self.signal = 0

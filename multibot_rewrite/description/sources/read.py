@@ -45,7 +45,7 @@ def _is_xacro(source: Source) -> bool:
 
 
 def is_xacro(path: str) -> bool:
-    """Return whether it is a xacro, by its name or, as turtlebot3's .urdf files, by its contents."""
+    """Return whether a file is a xacro, by its name or, as turtlebot3's .urdf files, its contents."""
     if not path.endswith((".urdf", ".srdf", ".sdf", ".xml")):
         return path.endswith(XACRO)
     with suppress(InputError):
@@ -80,7 +80,7 @@ def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
         known = known_arguments(texts.values()) if xacro_args else KnownArguments()
         return SourceText(data, f"{path} (expanded)", tuple(texts), known)
     if xacro_args:
-        raise UsageError(f"{path}: xacro arguments given, but the file is no xacro")
+        raise UsageError(f"{path}: it is no xacro; leave out its xacro arguments")
     return SourceText(read_model(path), path, (path,))
 
 

@@ -138,6 +138,7 @@ class Pieces:
 
     @cached_property
     def _rows_by_value(self) -> dict[tuple[int, str], list[tuple[int, ...]]]:
+        """The rows of numbers by element and attribute, one for each piece."""
         numbers, words = self.trace.result.pieces, self.trace.result.words
         every = (numbers[at : at + EIGHT] for at in range(0, len(numbers), EIGHT))
         return lists_by_key(
@@ -147,6 +148,7 @@ class Pieces:
         )
 
     def _piece_of_row(self, text: str, row: tuple[int, ...]) -> Piece:
+        """Return the piece with a text that a row of numbers is about."""
         _, file, element, word, offset, whole = row
         words, names = self.trace.result.words, self.trace.names
         attribute = words[word] if 0 <= word < len(words) else ""

@@ -82,7 +82,7 @@ def put_back(source: bytes, file: str, tree: Tree) -> bytes:
 
 
 def needed_systems(models: Iterable[tuple[str, _Element]]) -> Iterator[tuple[str, str]]:
-    """Yield the systems that a Gazebo world needs for these models, each once, with the reason."""
+    """Yield (system, reason) for each system that a Gazebo world needs for these models."""
     # Source: user_commands of gz-sim8 spawns entities.
     every = list(models)
     if every:

@@ -53,7 +53,7 @@ class Inventory(NamedTuple):
 
     @property
     def served(self) -> list[tuple[etree._Element, PluginDefinition]]:
-        """The hosts that have a section, with it."""
+        """The hosts that have a section, as (element, section)."""
         return [(it.element, it.node.section) for it in self.hosts if it.node.section is not None]
 
     @property
@@ -76,7 +76,7 @@ def collect(
     urdf_declarations: Declared = NOTHING,
     layout: naming.Layout = USUAL_LAYOUT,
 ) -> Inventory:
-    """Walk the document in order along the tree of rewriters.
+    """Return the inventory of a document, read in order along the tree of rewriters.
 
     ``urdf_declarations`` is what the URDF of an SRDF declares. In a ``layout`` that names frames at
     run time these are not renamed as links are, and in one that keeps the names of models no topic
@@ -143,6 +143,7 @@ def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], li
 
 
 def _root_format(document: Document, tree: Tree, likely: str) -> str:
+    """Return the section of the root element; raises InputError for no known one."""
     found = tree.format_of(document.root, likely)
     if not found:
         known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
@@ -169,6 +170,7 @@ def _of_the_robot(claims: list[Claim]) -> list[Claim]:
 
 
 def _site_applies(site: SiteRow, element: etree._Element) -> bool:
+    """Return whether the sibling that a site depends on has one of the wanted texts."""
     if site.when in ("", SENT):
         return True
     sibling, _, texts = site.when.partition("=")

@@ -58,10 +58,7 @@ class Document(NamedTuple):
 
 
 def read_document(source: bytes, file: str, placed: bool = True) -> Document:
-    """Parse ``source``; raises InputError with place, cause and remedy where that cannot be done.
-
-    Without ``placed`` elements are numbered and not looked for in the bytes.
-    """
+    """Return the parsed document; raises InputError. Not ``placed``: elements have no offsets."""
     _refuse_unreadable_bytes(source, file)
     root, is_mended = _parsed(source, file)
     elements = list(root.iter("*"))
@@ -74,7 +71,7 @@ def read_document(source: bytes, file: str, placed: bool = True) -> Document:
 
 
 def _parsed(source: bytes, file: str) -> tuple[etree._Element, bool]:
-    """Return the root of a text as TinyXML-2 reads it, and whether it had to be mended."""
+    """Return (root as TinyXML-2 reads the text, whether the text had to be mended)."""
     if not is_loose(source):
         with suppress(etree.XMLSyntaxError):
             return etree.fromstring(source, _PARSER), False
@@ -145,7 +142,7 @@ def _refuse_wide(document: Document) -> None:
         count = len(elements[at].attrib) + source.count(b" xmlns:", start, tag_end(source, start))
         if count > MAX_ATTRIBUTES:
             line, column = locate(source, start)
-            what = f"an element has {count:,} attributes, over the limit of {MAX_ATTRIBUTES:,}"
+            what = f"an element has {count:,} attributes, over {MAX_ATTRIBUTES:,}; leave some out"
             raise InputError(f"{file}:{line}:{column}: {what}")
 
 
@@ -239,21 +236,21 @@ def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
     end = begin + len(raw)
     if source.startswith(raw, begin) and source.startswith(b"</", end):
         return begin, end
-    begin = _behind_comments(source, tag_end(source, start))
+    begin = _after_comments(source, tag_end(source, start))
     text = source[begin : source.find(b"<", begin)].rstrip()
     end = begin + len(text)
-    rest = _behind_comments(source, end)
+    rest = _after_comments(source, end)
     whole = source.startswith(b"<", rest) and not source.startswith(b"<!", rest)
     return (begin, end) if whole and _reads_as(b"<a>%s</a>", text, value) else None
 
 
-def _behind_comments(source: bytes, at: int) -> int:
+def _after_comments(source: bytes, at: int) -> int:
     found = _COMMENTS.match(source, at)
     return found.end() if found else at
 
 
 def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes]:
-    """Return where text goes in an element without text, and what to write around it."""
+    """Return (start, end, before, behind): where text goes in an element, and what to write around."""
     # A filled ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied
     # again. Before white space, a comment or anything else, the text is written without more.
     end = tag_end(source, start)
@@ -278,6 +275,7 @@ def emptied(source: bytes, slot: tuple[int, int]) -> Edit:
 
 
 def _reads_as(frame: bytes, raw: bytes, value: str) -> bool:
+    """Return whether a parser reads ``raw``, put into ``frame``, as ``value``."""
     element = etree.fromstring(frame % raw.replace(b'"', b"&quot;"))
     return (element.get("b") if b"b=" in frame else element.text or "") == value
 

@@ -111,7 +111,7 @@ def elements_of(items: list[Insertion], lead: str) -> list[str]:
 
 
 def slot_edits(start: int, end: int, text: str) -> list[Edit]:
-    """Replace ``start:end`` by ``text``, in which ``ROBOT_SLOT`` stands for the robot's name."""
+    """Return the edits that put ``text``, with the robot's name at each ``ROBOT_SLOT``, in place."""
     first, *rest = (piece.encode() for piece in text.split(ROBOT_SLOT))
     if not rest:
         return [Edit(start, end, first, None)]
@@ -136,7 +136,8 @@ def _read_marker(document: Document, comment: etree._Element, words: list[str]) 
     filled = rest[1:] if rest[:1] == ["filled"] else []
     known = rest in ([], ["expanded"]) or (filled and all(map(is_step, filled)))
     if not number[1:].isdigit() or not known:
-        raise InputError(f"{document.file}:{comment.sourceline}:1: this marker was edited by hand")
+        place = f"{document.file}:{comment.sourceline}:1"
+        raise InputError(f"{place}: this marker was edited by hand; undo that")
     return Marker(comment, robot, int(number[1:]), rest == ["expanded"], tuple(filled))
 
 
@@ -151,7 +152,7 @@ def removals(document: Document, robot: str) -> list[Edit]:
         try:
             edits += _removal_edits(document, marker, starts)
         except ValueError:  # an end tag is not where this module writes it
-            raise _edited_by_hand(document, marker) from None
+            raise _error_for_edit_by_hand(document, marker) from None
     return edits
 
 
@@ -162,7 +163,7 @@ def _removal_edits(
     parent = marker.comment.getparent()
     inserted = list(marker.comment.itersiblings("*"))[: marker.elements]
     if parent is None or len(inserted) != marker.elements:
-        raise _edited_by_hand(document, marker)
+        raise _error_for_edit_by_hand(document, marker)
     at = source.index(b"<!--%s-->" % (marker.comment.text or "").encode(), starts[parent])
     # Everything back to the tag before it is white space that was written with it.
     begin = source.rindex(b">", 0, at) + 1
@@ -178,14 +179,14 @@ def _removal_edits(
         text = text_of(filled) if filled is not None else ""
         slot = text_slot(document.source, start, text) if text else None
         if slot is None:
-            raise _edited_by_hand(document, marker)
+            raise _error_for_edit_by_hand(document, marker)
         begin, end, before, _ = emptied(document.source, slot)
         yield Edit(start, end, document.source[start:begin] + before, None)
 
 
-def _edited_by_hand(document: Document, marker: Marker) -> InputError:
+def _error_for_edit_by_hand(document: Document, marker: Marker) -> InputError:
     place = f"{document.file}:{marker.comment.sourceline}:1"
-    return InputError(f"{place}: the elements this marker counts were edited by hand")
+    return InputError(f"{place}: the elements this marker counts were edited by hand; undo that")
 
 
 def end_of(source: bytes, start: int) -> int:

@@ -36,7 +36,7 @@ class Plan(NamedTuple):
 
 
 def make_plan(inventory: Inventory, naming: Naming) -> Plan:
-    """Apply ``naming`` once to every distinct name and place the results."""
+    """Return the plan of a rewrite: the naming asked once for each name, and the edits."""
     renames = make_renames(inventory, naming)
     edits, findings = _edits(inventory, renames)
     document, claims, _, declared, *_ = inventory

@@ -24,7 +24,7 @@ class RenameMap(NamedTuple):
     values: list[Spelling]
 
     def changes(self, kind: str, name: str) -> bool:
-        """Return whether this declared name changes."""
+        """Return whether a declared name changes."""
         return (kind, name, False) in self.affixes
 
     def spelled(self, robot: str, kind: str, name: str, namespaced: bool = False) -> str:
@@ -34,7 +34,7 @@ class RenameMap(NamedTuple):
 
 
 def make_renames(inventory: Inventory, naming: Naming) -> RenameMap:
-    """Ask the naming once for every distinct name of a description."""
+    """Return the new name of every distinct name of a description, asked of the naming once."""
     declared = inventory.declared.items()
     asked: dict[NameKey, Affix | None] = {
         (kind, name, False): affix(naming, kind, name) for kind, names in declared for name in names

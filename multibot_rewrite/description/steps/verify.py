@@ -213,7 +213,7 @@ def robots_own(it: Evidence) -> None:
 
 
 def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
-    """Yield the names in inserted elements that change, and whether a namespace reaches them."""
+    """Yield (name, whether a namespace reaches it) of names in inserted elements that change."""
     for claim, names in it.added:
         if _is_own_namespace(claim, it):
             continue
@@ -292,7 +292,7 @@ def a_slot_each(it: Evidence) -> None:
 
 
 def _is_own_namespace(claim: Claim, it: Evidence) -> bool:
-    """Return whether it is the namespace that a plugin needs in a layout that has none."""
+    """Return whether a claim is the namespace that a plugin needs in a layout without namespaces."""
     return "namespace" not in it.naming.separators and claim.value == f"/{it.robot}"
 
 

@@ -137,6 +137,7 @@ def _in_words(error: Any) -> str:
 
 
 def _wanted_value_text(error: Any) -> str:
+    """Return what to write in place of a wrong value, by the schema; may be empty."""
     given, wanted = error.instance, error.validator_value
     about = error.schema.get("description", "")
     if error.validator == "type" and wanted == "string" and not isinstance(given, dict | list):

@@ -35,7 +35,7 @@ Places = Mapping[Path, tuple[str, int]]
 
 
 def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
-    """Check that every named file exists; its content is checked later."""
+    """Raise InputError, with line and remedy, for a named file that does not exist."""
     for key in (*PATHS, *BESIDE, "launch", "related_files", "robots", JOIN):
         value = data.get(key, ())
         if key in ("robots", JOIN):
@@ -67,6 +67,7 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
     """Return the data with every path relative to the working directory."""
 
     def resolve(value: Any) -> Any:
+        """Return a path from the working directory; of a list each of its paths."""
         if isinstance(value, str):
             return _joined(folder, value)
         return value if isinstance(value, dict) else [resolve(it) for it in value]
@@ -95,7 +96,7 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _file_and_rest(text: str) -> tuple[str, str]:
-    """Return the file in arguments for ``ros2 launch``, split as a shell does, and the rest."""
+    """Return (file, rest) of arguments for ``ros2 launch``, split as a shell does."""
     rest = StringIO(text)
     words = shlex.shlex(rest, posix=True)
     words.whitespace_split, words.commenters = True, ""
@@ -113,7 +114,7 @@ def _joined(folder: str, path: str) -> str:
 
 
 def _of_package(text: str) -> bool:
-    """Return whether it is ``PACKAGE FILE``, not a path."""
+    """Return whether a text is ``PACKAGE FILE``, not a path."""
     package, rest = _file_and_rest(text)
     file = next(iter(rest.split()), "")
     return bool(file) and "=" not in package + file
@@ -191,6 +192,7 @@ def read_data(source: FleetSource) -> FleetData:
 
 
 def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:
+    """Return the data of a fleet file with that of all files it includes; its own values count."""
     path, real = read.file, os.path.realpath(read.file)
     for other in listed(read.data.pop("include", [])):
         if os.path.realpath(other) in (*above, real):

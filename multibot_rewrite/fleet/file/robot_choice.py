@@ -101,7 +101,7 @@ def _continued(read: FleetData, count: int) -> Iterator[_Row]:
 
 
 def _numbered(read: FleetData, count: int) -> tuple[str, int]:
-    """Return the last robot's name without its number, and the last number; raises UsageError."""
+    """Return (name without its number, number) of the last robot; raises UsageError."""
     given = read.data["robots"]
     found = [_NUMBERED.fullmatch(robot[NAME]) for robot in given]
     if found[1:] and (last := found[-1]):
@@ -116,7 +116,7 @@ def _without(robot: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _chosen(text: str, rows: list[_Row], given: list[dict[str, Any]]) -> Iterator[_Row]:
-    """Yield the robots that a text names, as in the file or like its pattern or first robot."""
+    """Yield (row, robot) for each robot that a text names, as in the file or like its first pattern."""
     known = {robot[NAME]: (at, robot) for at, robot in rows}
     like = next((at for at, it in enumerate(given) if COUNT in it), 0)
     base = like, {key: it for key, it in _without(given[like]).items() if key not in OWN}
@@ -126,7 +126,7 @@ def _chosen(text: str, rows: list[_Row], given: list[dict[str, Any]]) -> Iterato
 
 
 def parse_robots(text: str) -> Iterator[tuple[str, dict[str, float]]]:
-    """Yield each name with its pose, which is empty if none is given; raises UsageError."""
+    """Yield (name, pose) of each robot; a pose is empty if none is given; raises UsageError."""
     seen: set[str] = set()
     for part in filter(None, map(str.strip, text.split(";"))):
         name, _, pose = (it.strip() for it in part.partition("="))

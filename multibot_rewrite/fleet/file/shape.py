@@ -83,7 +83,7 @@ def with_shape(file: FleetFile) -> FleetFile:
 
 
 def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
-    """Return the robot with the places of its outputs, by their names without a shape."""
+    """Return the robot with the paths below its folder at which a vendor's launch files look."""
     if not shape:
         return robot
     made, related_files = {}, robot.spec.related_files
@@ -101,11 +101,12 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
 
 
 def name_of(robot: RewrittenRobot, what: str) -> str:
-    """Return the output of a robot without its place, by what it is; empty if it has none."""
+    """Return the file name of a robot's output of a sort, such as ``amcl``; empty if it has none."""
     return next(_files_with(robot, what), "")
 
 
 def _files_with(robot: RewrittenRobot, what: str) -> Iterator[str]:
+    """Yield the file names of a robot's outputs of a sort: description, bridge, or a node's section."""
     spec = robot.spec
     described = {DESCRIPTION: spec.description, SRDF: spec.srdf}
     if what in described:
@@ -120,5 +121,6 @@ def _files_with(robot: RewrittenRobot, what: str) -> Iterator[str]:
 
 
 def _plain_name(robot: RewrittenRobot, source: str) -> str:
+    """Return the name that the robot's version of a file has without a shape."""
     plain = robot._replace(spec=robot.spec._replace(places=()))
     return path_for(plain, source).partition("/")[2]

@@ -73,12 +73,12 @@ def of_simulator(hardware: str) -> bool:
 
 
 def may_be_simulated(hardware: str) -> bool:
-    """Return whether it is a simulator's class, or is named as a vendor's own one is."""
+    """Return whether a hardware class is a simulator's, or named as a vendor's own one is."""
     return _SIMULATED.search(hardware.lower()) is not None
 
 
 def loads_hardware(root: _Element) -> bool:
-    """Return whether it has a plugin of a simulator that makes a controller manager."""
+    """Return whether a description has a simulator's plugin that makes a controller manager."""
     blocks = [root] if root.tag == "sdf" else root.findall("gazebo")
     files = (it.get("filename") or "" for block in blocks for it in block.iter("plugin"))
     return any("ros2_control" in it for it in files)
@@ -92,7 +92,7 @@ def suits_simulator(root: _Element) -> bool:
 
 
 def suits_real(root: _Element) -> bool:
-    """Return whether none of its hardware is a simulator's."""
+    """Return whether none of a description's hardware is a simulator's."""
     return not (_lacks_a_class(root) or any(map(of_simulator, hardware_classes(root))))
 
 
@@ -104,7 +104,7 @@ def _lacks_a_class(root: _Element) -> bool:
 def switch_for(
     path: str, given: Mapping[str, str], suits: Suits, reach: Reach
 ) -> tuple[str, str] | None:
-    """Return the argument and value with which a description suits; None if not needed, or none."""
+    """Return (argument, value) with which a description ``suits``; None if not needed, or none."""
     if not path.endswith(".xacro"):
         return None
     with suppress(InputError):
@@ -120,7 +120,7 @@ def switch_for(
 
 
 def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Yield arguments with another value that may switch between simulated and real."""
+    """Yield (argument, other value) that may switch between simulated and real."""
     # That is one with such a name and a value of true or false, one that is compared with other
     # words (``mode == 'gazebo'``), or one for a hardware class.
     declared: dict[str, str] = {}
@@ -170,6 +170,7 @@ def with_own_arguments(
 
     @cache
     def found(path: str, given: frozenset[tuple[str, str]]) -> tuple[Argument, ...]:
+        """Return a xacro's arguments named as those for robots; none if it cannot be read."""
         tree, reach = builtin_tree(file.definitions, file.distro, ROS_2), Reach(trust=trust)
         with suppress(InputError):
             return find_arguments(

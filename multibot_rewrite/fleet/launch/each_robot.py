@@ -78,6 +78,7 @@ def _common_shape(it: RobotStarts) -> object:
 
 
 def _without_texts(it: Any, field: str = "") -> object:
+    """Return a key of a value: its shape, with the texts that all robots share."""
     if isinstance(it, str):
         return it if field in _OF_PROGRAMS or FLAG.fullmatch(it) else ""
     if isinstance(it, Mapping):
@@ -88,7 +89,7 @@ def _without_texts(it: Any, field: str = "") -> object:
 
 
 def _items_with_fields(it: Sequence[Any]) -> Iterator[tuple[str, Any]]:
-    """Yield the items, each with its field; that of an argument of a program is the flag before it."""
+    """Yield (field, item) for each item; the field of a program's argument is the flag before it."""
     if fields := getattr(it, "_fields", None):
         yield from zip(fields, it, strict=True)
         return
@@ -119,7 +120,7 @@ class _Merging(NamedTuple):
     parameters: dict[str, tuple[str, ...]]
 
     def starts(self, group: Sequence[RobotStarts]) -> RobotStarts:
-        """Return what all of them start."""
+        """Return what all robots of a group start, with parameters where they differ."""
         first = group[0]
         values = {it: self.one([getattr(own, it) for own in group], it) for it in _VALUES}
         left = tuple((name, of_any(why, first.name)) for name, why in first.left)
@@ -187,7 +188,7 @@ def _split_at_name(text: str, robot: str) -> list[str]:
 
 
 def _is_number(text: str) -> bool:
-    """Return whether it is a number that Python writes in the same way."""
+    """Return whether a text is a number that Python writes in the same way."""
     try:
         return str(float(text)) == text and text.strip("-")[0].isdigit()
     except ValueError:

@@ -6,16 +6,14 @@ to the reader: they are named in the file.
 """
 
 import os
-import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 from multibot_rewrite.base.conventions import BY_HAND
-from multibot_rewrite.base.naming import TF_TOPICS, Naming
-from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.fleet.file.domains import MOVE_GROUP
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.own_processes import own_processes, process_for, renamed_word
 from multibot_rewrite.fleet.launch.starts import SIMULATOR, RobotStarts
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.moveit_parameters import parameters_path
@@ -45,7 +43,6 @@ from multibot_rewrite.knowledge.programs import (
 )
 from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts, names_its_process
 from multibot_rewrite.planning.domain_bridge import bridge_name, bridge_path
-from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.planning.start import (
     File,
     Parameters,
@@ -64,11 +61,9 @@ from multibot_rewrite.producers.launch.handed_on import (
     SEMANTIC,
     HandedOn,
     for_robot,
-    handed_on,
 )
 from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
-from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.system.records import COMPONENT, PUBLISHES, SPAWNER, TOPIC
+from multibot_rewrite.system.records import COMPONENT, PUBLISHES, SPAWNER
 from multibot_rewrite.system.words import START_POSE, last_word
 
 STATE = "robot_state_publisher"
@@ -82,15 +77,9 @@ _NAME = (
     "if it runs, add it to a `node_sets:`, name its launch file under `launch:`, or start it here"
 )
 _OTHERWISE = "give it another value behind its file under `launch:`, and build again"
-_NO_NAME = "unnamed"
 _OF_MOVEIT = ("move_group", "servo_node")
 # What of MoveIt's parameters has names of joints, links and controllers.
 _NAMED = ("robot_description", "moveit_simple_controller_manager", "moveit_ros_control_interface")
-# The words of ros2 behind which nodes stand, and those with topics, services and actions.
-_CONTROL, MANAGER_IN_ROOT = "control", "/controller_manager"
-_OF_NODES, _OF_NAMES = ("lifecycle", "param", "control", "node"), ("topic", "service", "action")
-# Where the first name stands behind ros2, its verb and what that does; what ends a command of a shell.
-_FIRST, _NEXT = 3, ("&&", "||", ";", "|", "&")
 _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 
 
@@ -123,7 +112,7 @@ def of_robot(
     given = given._replace(params=params)
     processes = (_start_of(given, it) for it in given.running if names.started[it].way != COMPONENT)
     relayed = [it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file)]
-    launched = sorted((*processes, *_processes(one, robot)), key=lambda it: it.number)
+    launched = sorted((*processes, *own_processes(one, robot)), key=lambda it: it.number)
     starts = (
         *launched,
         *(it.start for it in start_poses.start_poses(one).transforms),
@@ -178,7 +167,7 @@ class _Given(NamedTuple):
 
 
 def _not_started(given: _Given) -> Iterator[tuple[str, str]]:
-    """Yield nodes that are not started, with the reason; empty if something else starts them."""
+    """Yield (node, reason) for nodes that are not started; empty if something else starts them."""
     naming, file = given.plan.fleet.naming, given.plan.file
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
     for name in given.names.started:
@@ -299,102 +288,6 @@ def _with_launch_settings(plan: FleetPlan, robot: RewrittenRobot, it: Start, nam
     )
 
 
-def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
-    """Yield the processes of launch files that are no nodes, with the robot's parameter files."""
-    own = {os.path.realpath(it): it for it in robot.spec.related_files.get("params", ())}
-    for it in (one for one in plan.evidence_of(robot).processes if not one.once):
-        made = _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
-        words = []
-        for word in made.arguments:
-            path = own.get(os.path.realpath(str(word))) if made.process.is_include else None
-            words.append(word if path is None else File(path_for(robot, path)))
-        yield made._replace(arguments=tuple(words))
-
-
-def _own_command(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
-    """Return a command; nodes and topics in ``ros2`` commands are the robot's."""
-    words, verb = (it.executable, *it.arguments), ""
-    found: list[str] = []
-    for at, word in enumerate(words):
-        if any(one.isspace() for one in word) and "ros2" in word:
-            verb, parts = "", re.split(r"(\s+)", word)
-            for number, part in enumerate(parts):
-                before = parts[number - 2] if number > 1 else ""
-                verb = part if os.path.basename(before) == "ros2" else verb
-                verb = "" if part in _NEXT or before.endswith(";") else verb
-                parts[number] = _renamed_word(part, verb, space, naming)
-            found.append("".join(_with_own_manager(parts, " ", space, naming)))
-            continue
-        verb = word if at == 1 and os.path.basename(words[0]) == "ros2" else verb
-        # ros2 takes a name without a slash for one in the root.
-        is_name = at == _FIRST and verb not in ("", _CONTROL) and word[:1] not in ("-", "/")
-        own = f"/{word}" if is_name else word
-        named = _renamed_word(own, verb, space, naming)
-        found.append(word if named == own else named)
-    return tuple(_with_own_manager(found, "", space, naming))
-
-
-def _with_own_manager(
-    words: Sequence[str], between: str, space: str, naming: Naming
-) -> Iterator[str]:
-    """Yield the words of a command, with the robot's manager for ``ros2 control``."""
-    # Without a name it asks for one in the root (ros2controlcli, add_controller_mgr_parsers).
-    own = [it for it in words if not it.isspace()]
-    is_open = not {*own} & {"-c", "--controller-manager"}
-    spaced = [between, "-c", between, _renamed_word(MANAGER_IN_ROOT, _CONTROL, space, naming)]
-    before = ["", "", ""]
-    for word in words:
-        before = before if word.isspace() else [*before[1:], word]
-        asks = is_open and os.path.basename(before[0]) == "ros2" and before[1] == _CONTROL
-        bare = word.rstrip(";") if asks else word
-        yield bare
-        yield from filter(None, (*spaced, word[len(bare) :]) if asks else ())
-        is_open = is_open and not asks
-
-
-def _renamed_word(word: str, verb: str, space: str, naming: Naming) -> str:
-    if not word.startswith("/") or check_topic_name(word):
-        return word
-    if verb in _OF_NODES:
-        above, name = placed(space, word, naming)
-        return f"{above.rstrip('/')}/{name}"
-    target = target_of(word, TOPIC, space, naming) if verb in _OF_NAMES else ""
-    return f"/{space}/{target}" if target and target[0] != "/" else target or word
-
-
-def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) -> Start:
-    """Return a process of a robot; without a naming one for all robots, as it is."""
-    made: LaunchedNode = for_robot(it, robot)
-    namespace, name = made.namespace, made.name
-    if naming is not None:
-        above = made.namespace.strip("/")
-        namespace, spelled = placed(space, f"{above}/{name or _NO_NAME}", naming)
-        name = spelled if name else ""
-    given = handed_on(made, made.name).values if not made.process.is_include else {}
-    rules = made.remappings
-    if made.process.is_include and naming is not None:
-        topics = ((f"/{it}", target_of(f"/{it}", TOPIC, space, naming)) for it in TF_TOPICS)
-        rules = tuple((old, new) for old, new in topics if new)
-    is_node, words, program = bool(made.package), made.arguments, made.executable
-    if naming and not is_node:
-        program, *own_words = _own_command(made, space, naming)
-        words = tuple(own_words)
-    if made.process.is_include:
-        words = tuple(part for word in words for part in word.split(":=", 1))
-    return Start(
-        made.package,
-        program,
-        namespace if is_node else "",
-        name,
-        (given,) if given else (),
-        rules,
-        words,
-        environment=dict(made.environment),
-        process=made.process,
-        number=made.number,
-    )
-
-
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     """Return the robot's parameter files for a node, and the values that no file has."""
     robot, facts = given.robot, given.facts[name]
@@ -451,7 +344,7 @@ def _publisher_parameters(given: _Given, name: str) -> Parameters:
 
 
 def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:
-    """Yield the parameter files of launch files, each with its nodes."""
+    """Yield (file, nodes) for the parameter files of launch files."""
     # Without nodes if it is for a spawner, or for a launch file that is missing.
     evidence = plan.evidence_of(robot)
     words = (
@@ -483,7 +376,7 @@ def _controller_types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
 
 
 def _managed(given: _Given, manager: str) -> Iterator[str]:
-    """Yield what a lifecycle manager's nodes are called; empty for one that the robot has not."""
+    """Yield the full names of a lifecycle manager's nodes; empty for one that the robot has not."""
     return (_own_node_name(given, it) for it in given.names.managed.get(manager, ()))
 
 
@@ -546,7 +439,7 @@ def _qos_rows(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tu
     """Yield settings of launched bridges for the robot's topics; without ``space`` for shared."""
     for key, value in plan.evidence_of(robot).qos.items():
         topic = key.split(".")[1]
-        named = _renamed_word(topic, "topic", robot.spec.namespace, plan.fleet.naming)
+        named = renamed_word(topic, "topic", robot.spec.namespace, plan.fleet.naming)
         if space or named == topic:
             yield key.replace(topic, named, 1), value
 
@@ -569,7 +462,7 @@ def of_all(
     found: list[Start] = []
     for robot in plan.robots:
         for it in (one for one in plan.evidence_of(robot).processes if one.once):
-            made, extra = _process(it.node, robot.spec.name, "", None), it.node.process.is_extra
+            made, extra = process_for(it.node, robot.spec.name, "", None), it.node.process.is_extra
             made = made._replace(number=-1, process=made.process._replace(after=-1))
             made = made._replace(condition=SIMULATOR if extra else "")
             found += [] if made in found or (extra and not simulators) else [made]

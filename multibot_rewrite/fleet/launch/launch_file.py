@@ -28,7 +28,7 @@ _SUBSTITUTION = lazy_compile(rb"\$\((?:(find-pkg-share|env) |(\w))")
 
 
 def launch_file(starts: FleetStarts) -> OutputFile:
-    """Return the launch file."""
+    """Return the launch file of a fleet, as a file of the build."""
     return OutputFile(LAUNCH, to_python(starts).encode())
 
 

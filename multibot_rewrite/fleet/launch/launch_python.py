@@ -21,7 +21,7 @@ _STARTED_APART = "[in_domain(name, ROBOTS[name]()) for name in words or ROBOTS]"
 
 
 def to_python(it: FleetStarts) -> str:
-    """Return the text of the launch file."""
+    """Return the text of a fleet's launch file."""
     body = _joined_lines(_fixed_part("file and text"), *_file_parts(it))
     return _joined_lines(_docstring_lines(it), _import_lines(body)) + body
 
@@ -38,6 +38,7 @@ def _joined_lines(*parts: Iterable[str]) -> str:
 
 
 def _file_parts(it: FleetStarts) -> Iterator[Iterable[str]]:
+    """Yield the functions and tables of the launch file, each as its lines."""
     if any(start.needs for start in it.every):
         yield "", "", *_fixed_part("if_installed")
     if any(start.brought_up for start in it.every):

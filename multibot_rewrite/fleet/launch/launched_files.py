@@ -75,7 +75,7 @@ def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
 
 
 def _bridge_rows(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
-    """Return bridge rows in arguments as texts by launch file and line, and bridges' own files."""
+    """Return bridge rows in arguments as texts, by launch file and line; and bridges' own files."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     found: dict[str, str] = {}
     nodes = launch_of(spec.launch, spec.words[0]).nodes
@@ -135,7 +135,7 @@ def _with_files(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, li
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
-    """Return whether the launch makes one text of the file for all robots, line by line."""
+    """Return whether a launch fills a file line by line, all of it and with no word of the robot."""
     same = len(it.text.splitlines()) == len(text.splitlines())
     named = {word for word in spec.words if word in it.text and word not in text}
     return same and not named and _SUBSTITUTED not in it.text
@@ -156,7 +156,7 @@ def with_one_map(file: FleetFile) -> FleetFile:
 
 
 def _maps(spec: RobotSpec) -> Iterator[tuple[str, tuple[object, str]]]:
-    """Yield the map servers outside the robot's namespace: name, map, and the topic from the root."""
+    """Yield (name, (map, topic from the root)) of map servers outside the robot's namespace."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     for it in launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ():
         if it.package == _MAPS and once_for_all(it) and not is_of_robot(it.namespace, words):
@@ -178,6 +178,7 @@ def with_bridge_namespaces(file: FleetFile) -> FleetFile:
 
 
 def _with_namespaces(spec: RobotSpec, robots: Collection[str]) -> RobotSpec:
+    """Return the robot with the namespaces that launch files give to its bridges."""
     files = spec.related_files.get("bridge", ())
     if spec.bridge_namespace or not (files and spec.launch):
         return spec

@@ -186,6 +186,7 @@ def _keyword_lines(it: Start, own: OfRobot) -> Iterator[str]:
 
 
 def _with_inherited(name: Any, text: Any) -> Any:
+    """Return Python for a variable of the environment, with the value that it has before in a list."""
     rest = Code(f"EnvironmentVariable({value(name)}, default_value='')")
     return text if isinstance(text, Code) else with_rest(text, rest)
 

@@ -87,7 +87,7 @@ class FleetStarts(NamedTuple):
 
 
 def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
-    """Yield the launch arguments: name, default, what it is."""
+    """Yield (name, default, what it is) of each launch argument."""
     yield "robots", "", "only these: robot1,robot2, or so many: 2"
     yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
     if any(start.condition == RVIZ for start in it.every):
@@ -121,6 +121,7 @@ def _switched(starts: Sequence[Start], own: Collection[str]) -> tuple[Start, ...
     numbered = {it.number: it for it in starts if it.number >= 0}
 
     def with_condition(it: Start) -> Start:
+        """Return a process with the arguments that turn it on or off as its condition."""
         first: Start | None = it
         while first is not None and not first.condition:
             first = numbered.get(first.process.after)
@@ -129,6 +130,7 @@ def _switched(starts: Sequence[Start], own: Collection[str]) -> tuple[Start, ...
         return it._replace(condition=it.condition or " ".join(one.word for one in named))
 
     def loaded(host: Start) -> Iterator[Start]:
+        """Yield a container, and loads of its components under conditions of their own."""
         parts = [*map(with_condition, filter(there, host.components))]
         alike = lists_by_key((it.condition, it._replace(condition="")) for it in parts)
         yield host._replace(components=tuple(alike.pop(host.condition, ())))

@@ -99,6 +99,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
 def _robot_bridges(
     robot: RewrittenRobot, files: dict[str, BridgeFile], topics: Iterable[BridgedTopic]
 ) -> FilesAndFindings:
+    """Yield a robot's bridge files: vendor's ones as they are, the others and topics as one."""
     spec = robot.spec
     texts = [
         (path, fill_bridge(file.own.template, spec.namespace, spec.tag, spec.model))

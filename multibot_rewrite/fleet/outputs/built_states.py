@@ -43,6 +43,7 @@ def with_built(plan: System, folder: str) -> System:
 def _parameters_of_robot(
     space: str, nodes: Sequence[str], folder: str
 ) -> Iterator[tuple[str, dict[str, Parameter]]]:
+    """Yield (node, parameters by name) for the nodes in the YAML files of a folder."""
     for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else ():
         path = os.path.join(folder, name)
         data = read_file(path) if name.endswith((".yaml", ".yml")) else b""

@@ -63,7 +63,7 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
 
 
 def loaded_files(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]:
-    """Yield each file that a plugin with a controller manager loads, and the span of its path."""
+    """Yield (file, span of its path) for files that a plugin with a controller manager loads."""
     inventory = robot.member.inventory
     document = inventory.document
     starts = dict(zip(document.elements, document.starts, strict=True))

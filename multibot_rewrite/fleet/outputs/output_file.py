@@ -128,12 +128,12 @@ def own_yaml(spec: RobotSpec, path: str) -> YamlText:
 
 
 def yaml_of(path: str) -> YamlText:
-    """Read a YAML file; raises InputError as ``read_yaml``."""
+    """Return a YAML file, parsed; raises InputError as ``read_yaml``."""
     return read_yaml(read_file(path), path)
 
 
 def line_in_source(file: OutputFile, line: int) -> tuple[str, int]:
-    """Return the source of a file, and its line that a line of the file was made from."""
+    """Return (source of a file, its line) that a line of the file was made from."""
     for start, end, first, last in _changed_ranges(file):
         if first < line <= last:
             return file.sources[0], max(1, min(start + line - first, end))

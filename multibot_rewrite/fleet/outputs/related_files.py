@@ -76,10 +76,7 @@ class LaunchedValues(NamedTuple):
 
 
 def launched_values(plan: FleetPlan) -> LaunchedValues:
-    """Return what launch files themselves set for the nodes of each robot.
-
-    Raises InputError for values that rcl refuses.
-    """
+    """Return what launch files set for the nodes of each robot; raises InputError as rcl would."""
     import yaml
 
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)

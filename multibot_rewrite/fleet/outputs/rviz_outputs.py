@@ -81,7 +81,7 @@ def windows_of_plan(plan: System, relayed: bool) -> tuple[RvizText, ...]:
 
 
 def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
-    """Return the rules for both topics of tf."""
+    """Return the rules (from, to) for both topics of tf."""
     # The robot's name may have ``tf`` in it, or be it: the topic is the last part of a name in a
     # namespace, else the first one of that name.
     tf, static = TF_TOPICS
@@ -221,7 +221,7 @@ class RvizOutput(NamedTuple):
     name: str
 
     def path(self, window: RvizText) -> str:
-        """Return where the config of one of its windows goes."""
+        """Return where the config of a window goes."""
         return f"{window.robot}/{os.path.basename(self.source)}" if window.robot else self.name
 
 
@@ -316,10 +316,7 @@ def why_for_each(path: str, layout: str) -> str:
 
 
 def windows(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[tuple[str, Start]]:
-    """Return what opens the windows, each with the one robot that it shows, or "" for all.
-
-    MoveIt's displays read the parameters of their process.
-    """
+    """Return (robot, what opens it) for each window, with "" for one of all robots."""
     given = {it.spec.name: path_for(it, FILE) for it in plan.robots if has_moveit(it)}
     if cell := plan.file.cell:
         given[cell.name] = parameters_path(cell)

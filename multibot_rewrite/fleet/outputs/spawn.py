@@ -115,7 +115,7 @@ def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
 
 
 def spawner(it: Spawn, classic: bool) -> Start:
-    """Return what spawns a robot in Gazebo Classic or gz-sim."""
+    """Return the process that spawns a robot in Gazebo Classic or gz-sim."""
     # gflags reads ``-allow_renaming false`` as true: a flag takes its value after an equals sign.
     program, named = (CLASSIC, "-entity") if classic else (GZ, "-name")
     last = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []

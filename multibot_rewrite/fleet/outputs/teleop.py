@@ -53,6 +53,7 @@ def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
 
 
 def _robot_ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, Endpoint, str]]:
+    """Yield (node, end, name) for the ends of a robot's nodes."""
     runs = (it for it in plan.fleet.table.runs if it.robot == robot.spec.namespace)
     yield from ((run.full_name, end, name) for run in runs for end, name in run.names)
 

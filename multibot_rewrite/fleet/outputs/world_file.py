@@ -136,6 +136,7 @@ def _model_name(one: _Element) -> str:
 
 
 def _plugin_edits(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:
+    """Yield the edits that give each robot its own values in a plugin of the world; or a finding."""
     for block in (one for one in plugin.iterchildren("*") if len(one)):
         texts_in = (text_of(one) for one in block.iter("*") if not len(one))
         if not any(_new_value(text, kind.robots[0], kind.names, False) for text in texts_in):
@@ -177,7 +178,7 @@ def _block_for(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -
 
 
 def _new_value(value: str, robot: RewrittenRobot, names: frozenset[str], tied: bool) -> str:
-    """Return what a value becomes for a robot; empty if it does not name it."""
+    """Return what a value becomes for a robot; empty if it does not name the robot."""
     # In what is ``tied`` to the robot, links and joints become its own.
     model, scope, rest = value.partition(_SCOPE)
     if value in names:

@@ -55,7 +55,7 @@ class Setup(NamedTuple):
 
 
 def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
-    """Yield each file by name: the router's, one for the nodes of each robot, one for each operator."""
+    """Yield (name, bytes) of each file: for the router, the nodes of each robot, each operator."""
     known = rights(plan, setup.domain)
     domains = sorted({*domain_of(plan).values()}) or [setup.domain]
     # On every address, at the port that the robots connect to.
@@ -209,7 +209,7 @@ _MAP = "map"
 
 
 def free_fleet_files(plan: System, setup: FreeFleet) -> Iterator[tuple[str, bytes]]:
-    """Yield each file by its path; raises UsageError for names that the adapter does not look for."""
+    """Yield (path, bytes) of each file; raises UsageError for names that the adapter cannot find."""
     numbers, whose = domain_of(plan), whose_by_plan(plan)
     for robot in plan.robots:
         # Why the adapter would find nothing of the robot.

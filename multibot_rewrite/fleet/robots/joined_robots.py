@@ -99,7 +99,7 @@ class Arm(NamedTuple):
 
     @property
     def where(self) -> str:
-        """What a message begins with."""
+        """Return the place in the fleet file with which a message about the arm begins."""
         return f"{self.place}: cell: robot {self.name!r}"
 
 

@@ -125,7 +125,7 @@ class LoadedRobot:
 
     @property
     def description(self) -> str:
-        """Its rewritten description, for ``robot_description``; raises nothing."""
+        """The robot's rewritten description, for ``robot_description``; raises nothing."""
         return self._robot.description.decode()
 
     @property
@@ -137,7 +137,7 @@ class LoadedRobot:
 
     @property
     def srdf(self) -> str:
-        """Its rewritten SRDF, empty if it has none; raises nothing."""
+        """The robot's rewritten SRDF, empty if it has none; raises nothing."""
         return self._robot.srdf.decode()
 
     def to_dict(self) -> dict[str, Any]:
@@ -213,7 +213,7 @@ class LoadedRobot:
 
     @checked
     def text(self, file: str) -> str:
-        """Return its version of a file such as ``params.yaml``; raises as ``LoadedFleet.text``."""
+        """Return the robot's text of a file such as ``params.yaml``; raises as ``LoadedFleet.text``."""
         return self._fleet.text(self._path_in_build(file))
 
     @checked
@@ -227,7 +227,7 @@ class LoadedRobot:
         return own if own in self._fleet.files else name
 
     def _own_path(self, file: str) -> str:
-        """Return where its version of a file is; the folder decides between two with one name."""
+        """Return where the robot's version of a file is; the folder decides between two of one name."""
         *_, above, name = ("", *os.path.normpath(file).split(os.sep))
         places = dict(self._robot.spec.places)
         paths = [f"{self.name}/{places.get(it, it)}" for it in (f"{above}/{name}", name)]
@@ -235,7 +235,7 @@ class LoadedRobot:
 
     @checked
     def frame(self, name: str) -> str:
-        """Return its name of a link or frame that nodes send; raises UsageError for another."""
+        """Return the robot's name of a link or sent frame; raises UsageError for another."""
         runs = self._fleet.plan.evidence_of(self._robot).nodes
         sent = (it.default for node in runs for it in node.frames)
         return self._own_name("frame", name, (*SENT_FRAMES, *sent))

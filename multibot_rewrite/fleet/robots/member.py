@@ -120,7 +120,7 @@ def line_of(document: Document, tag: str, number: int) -> int:
 
 
 def is_for_simulator(member: Member) -> bool:
-    """Return whether a simulator may run it."""
+    """Return whether a simulator may run the robot."""
     # It may not if nothing in its description is for one, and it drives hardware or has no mass:
     # Gazebo spawns nothing of that.
     root: etree._Element = member.inventory.document.root

@@ -47,9 +47,7 @@ class NodeNames(NamedTuple):
 
     @checked
     def spawner(self, node: str) -> dict[str, Any]:
-        """Return what ``Node`` of launch_ros takes to load a controller; raises as ``for_node``.
-
-        Raises UsageError for a node that is no controller."""
+        """Return what launch_ros's ``Node`` takes to load a controller; or raises UsageError."""
         self._node_of(node)
         it = self.started.get(node)
         if it is None or it.way != SPAWNER:

@@ -33,9 +33,11 @@ from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.file.simulator_switch import hardware_classes, may_be_simulated
+from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.robots.member import Member, member, with_text
 from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.planning.transforms import links_of, tree_of
+from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATORS
 from multibot_rewrite.related_files.names.rename_map import (
     RelatedNames,
     related_file_names,
@@ -105,7 +107,7 @@ class RewrittenRobot(NamedTuple):
 
     @property
     def links(self) -> list[str]:
-        """Its links as frames."""
+        """The links of the robot, as frames."""
         return links_of(self.member.described, self.names.naming, self.spec.tag)
 
     @property
@@ -134,13 +136,14 @@ def read_jobs(
     trust: bool,
     release: str,
 ) -> dict[Sources, Jobs]:
-    """Read each description and SRDF once, as ``read_job``; ``trust``: xacro without the sandbox."""
+    """Return the jobs of each description and SRDF, read once; ``trust``: xacro without sandbox."""
 
     @cache
     def read_in(source: str, urdf: str | None, file: str) -> Reader:
         return reader(source, naming, urdf, tuple(definitions), file, trust, release)
 
     def read(robot: RobotSpec, path: str, urdf: str = "") -> Reader:
+        """Return the reader of one of a robot's files, which may be made for it."""
         made = dict(robot.filled)
         text, beside = made.get(path, path), made.get(urdf, urdf) or None
         return read_in(text, beside, path if path in made else "")
@@ -197,10 +200,18 @@ def rewrite_robots(
     made = (it for key, group in groups.items() for it in _rewritten_group(group, jobs[key]))
     found = {it.spec.name: it for it in made}
     classic = any(it.is_classic for it in found.values())
-    return [
+    alike = [
         it._replace(is_classic=it.is_classic or (classic and not _names_simulator(it)))
         for it in (found[robot.name] for robot in robots)
     ]
+    return [*map(_in_launched_simulator, alike)]
+
+
+def _in_launched_simulator(it: RewrittenRobot) -> RewrittenRobot:
+    """Return a robot in the simulator that its launch files start, if they start one."""
+    nodes = launch_of(it.spec.launch, it.spec.words[0]).nodes if it.spec.launch else ()
+    kinds = {node.package == CLASSIC for node in nodes if node.package in SIMULATORS}
+    return it._replace(is_classic=kinds.pop()) if len(kinds) == 1 else it
 
 
 def _names_simulator(it: RewrittenRobot) -> bool:

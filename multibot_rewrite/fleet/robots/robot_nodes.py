@@ -186,7 +186,8 @@ def _is_sent_beside(
     is_launched: bool,
 ) -> bool:
     """Return whether something else than the simulator sends a transform that places the robot."""
-    if sends_too(nodes, free, sent):
+    # Below another frame as well, where the vendor bridges none.
+    if sends_too(nodes, free, sent, is_launched):
         return True
     # A vendor who bridges none of two that place the robot has a node that does.
     held = {it.get("link", "") for it in member.source.root.iterfind("joint/child")}
@@ -370,7 +371,7 @@ NOT_MANAGED = declare("MF803", "shared-node-not-managed", NOTE, formats=("fleet"
 def apart(
     nodes: Sequence[NodeFacts], file: FleetFile
 ) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
-    """Return the nodes, shared ones marked, and findings about lifecycle managers of these."""
+    """Return the nodes with shared ones marked, and findings about lifecycle managers of these."""
     marked = [it._replace(shared=_runs_once(it.name, it.shared, file)) for it in nodes]
     shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]

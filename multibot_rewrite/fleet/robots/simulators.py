@@ -95,7 +95,7 @@ def _hardware_finding(robot: RewrittenRobot, wrong: str) -> Finding:
 
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
-    """Return whether it has parts for a simulator, and nothing says that it runs in one."""
+    """Return whether a robot has parts for a simulator, and nothing says that it runs in one."""
     return evidence.unsimulated and not is_said(robot) and has_parts_for_simulator(robot.member)
 
 

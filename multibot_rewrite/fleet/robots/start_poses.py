@@ -50,7 +50,7 @@ class StaticTransform(NamedTuple):
 
     @property
     def start(self) -> Start:
-        """Its process: values may be negative, names come last; raises nothing."""
+        """The process that sends the transform, with values before names; raises nothing."""
         pose = (
             word for key, value in self.pose._asdict().items() for word in (f"--{key}", f"{value}")
         )
@@ -94,6 +94,7 @@ def world_of(file: FleetFile, naming: Naming) -> str:
 
 
 def _start_of_robot(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[object]:
+    """Yield a robot's transform, amcl's pose, or a finding why neither can be."""
     naming, name = plan.fleet.naming, robot.spec.namespace
     world = world_of(plan.file, naming)
     if not world:

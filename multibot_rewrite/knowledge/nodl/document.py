@@ -99,7 +99,7 @@ class Document(NamedTuple):
 # A fleet asks for the same documents once for each robot.
 @lru_cache(maxsize=512)
 def parse(text: str, file: str) -> Document:
-    """Read a document; raises UsageError with file and line."""
+    """Return the document in a NoDL text; raises UsageError with file and line."""
     item = read_yaml_with_lines(text, file)
     if text.lstrip("\ufeff \t\r\n").startswith("<"):
         wrong(item, "NoDL 1, which is XML, is not read; write the interface in NoDL 2 (YAML)")

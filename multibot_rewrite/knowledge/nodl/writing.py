@@ -70,10 +70,11 @@ def document_of(
 
 
 def _fits(end: Endpoint) -> bool:
-    """Return whether NoDL has a form for its name and type. Types of an action's parts have none."""
+    """Return whether NoDL can hold an endpoint's name and type; those of an action's parts, no."""
     group = f"/{GROUP[end.kind]}/"
     return bool(_NAME.fullmatch(end.name) and _TYPE.fullmatch(end.type) and group in end.type)
 
 
 def _names_and_types(ends: Iterable[Endpoint]) -> set[tuple[str, str, str, str]]:
+    """Return (kind, role, name, type) of each end."""
     return {(it.kind, it.role, it.name, type_) for it in ends for type_ in (it.type, *it.also)}

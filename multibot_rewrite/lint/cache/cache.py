@@ -83,7 +83,7 @@ def write_shard(path: str, data: bytes) -> None:
 
 
 def bound(folder: str) -> None:
-    """Remove the files that were not used for longest, until half of what may be is left."""
+    """Remove the files used longest ago from a cache that is too large, until it is half as large."""
     files = []
     with os.scandir(folder) as found:
         for it in found:
@@ -173,7 +173,7 @@ class Cache:
 
 
 def findings_from(value: Any) -> list[Finding] | None:
-    """Return the findings; None if none are kept, or it is something else."""
+    """Return the findings in a kept value; None if none are kept, or the value is no such one."""
     try:
         rows = value if value is None else list(map(Finding._make, value))
         return rows and [it._replace(edits=tuple(map(Edit._make, it.edits))) for it in rows]
@@ -182,13 +182,13 @@ def findings_from(value: Any) -> list[Finding] | None:
 
 
 def among_written(settings: Settings, path: str = "") -> tuple[Any, ...]:
-    """Return what the settings know of the other files, to be kept; with a ``path`` only its part."""
+    """Return what the settings know of the other files, as plain values; of ``path`` only its part."""
     part = settings.included & {path} if path else settings.included
     return sorted(part), settings.urdfs, settings.elsewhere
 
 
 def among_from(value: Any, settings: Settings) -> Settings | None:
-    """Return the settings with what was kept; None where nothing is."""
+    """Return the settings with the plain values that ``among_written`` gave; None for none."""
     from multibot_rewrite.description.sources.known_arguments import KnownArguments
 
     try:
@@ -218,7 +218,7 @@ def identity(settings: Settings) -> str:
 
 
 def plain(value: object) -> object:
-    """Return a value with mappings and sets in order, so that equal values are written alike."""
+    """Return a value with its mappings and sets sorted, so that equal values are written alike."""
     if isinstance(value, Mapping):
         return [(plain(key), plain(it)) for key, it in sorted(value.items())]
     if isinstance(value, frozenset):
@@ -229,6 +229,7 @@ def plain(value: object) -> object:
 
 
 def _file_states(folder: str) -> Iterator[tuple[str, int, int]]:
+    """Yield path, time and size of each file below a folder."""
     with os.scandir(folder) as found:
         for it in found:
             if not it.is_dir(follow_symlinks=False):

@@ -115,7 +115,7 @@ def _with_level(found: Iterable[Finding], code: str, settings: Settings) -> Iter
 
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:
-    """Return whether every expansion of the comment's file has what the comment is about."""
+    """Return whether what a comment is about is in every expansion of its file."""
     if comment.file in settings.included:
         return False
     if not comment.file.endswith(".xacro"):

@@ -77,7 +77,7 @@ def _table(path: str) -> Mapping[str, object]:
         return config.parse(path, data)
     table = _project_table(path, data)
     if table is None:
-        raise UsageError(f"{path}: there is no table [tool.{TABLE}] in it")
+        raise UsageError(f"{path}: it has no table [tool.{TABLE}]; add it")
     return table
 
 

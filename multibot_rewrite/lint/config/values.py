@@ -38,7 +38,7 @@ def _non_empty_text(given: KeyValue) -> str:
     if not isinstance(given.value, str):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a text in quotes")
     if not given.value:
-        raise UsageError(f"{given.where} is empty")
+        raise UsageError(f"{given.where} is empty, write a text")
     return given.value
 
 
@@ -99,7 +99,7 @@ def _path_from_folder(given: KeyValue) -> str:
 def _existing_file(given: KeyValue) -> str:
     path = _path_from_folder(given)
     if not os.path.isfile(path):
-        raise UsageError(f"{given.where}: no file {given.value!r} in {given.folder}")
+        raise UsageError(f"{given.where}: {given.folder} has no {given.value!r}; correct the path")
     return path
 
 
@@ -121,6 +121,7 @@ def _seconds(given: KeyValue) -> float:
 
 
 def _codes_by_pattern(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Return pairs: a pattern of paths, and the codes listed for it."""
     return tuple(
         (pattern, _codes(it)) for key, it in _table_of(given) for pattern in _patterns(key, given)
     )
@@ -188,7 +189,7 @@ FIELDS = {"per-file-ignores": "per_file", "xacro": "arguments"}
 
 
 def anchored(pattern: str, folder: str, where: str) -> tuple[str, ...]:
-    """Return a pattern as one or two of whole paths; without a slash it is a name in any folder."""
+    """Return one or two patterns of whole paths; one without a slash is a name in any folder."""
     _check_pattern(pattern, where)
     if os.path.isabs(pattern):
         return (pattern,)
@@ -205,13 +206,13 @@ def anchored(pattern: str, folder: str, where: str) -> tuple[str, ...]:
 
 def _check_pattern(pattern: str, where: str) -> None:
     if not pattern:
-        raise UsageError(f"{where}: a pattern is empty")
+        raise UsageError(f"{where}: a pattern is empty, remove it")
     if pattern.startswith("!"):
-        raise UsageError(f"{where}: {pattern!r}: a pattern cannot take files back in with '!'")
+        raise UsageError(f"{where}: {pattern!r}: '!' takes no file back in, name what is left out")
     if "}" in pattern.partition("{")[2]:
         raise UsageError(f"{where}: {pattern!r}: write one pattern each instead of {{a,b}}")
     if not all(it[1] for it in re.finditer(r"\[!?\]?[^\]]*(\]?)", pattern)):
-        raise UsageError(f"{where}: {pattern!r}: a bracket is not closed")
+        raise UsageError(f"{where}: {pattern!r}: a bracket is not closed, write ]")
     if ".." in pattern.split("/"):
         raise UsageError(f"{where}: {pattern!r} leads out of the folder, write the whole path")
 

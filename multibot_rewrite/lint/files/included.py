@@ -43,7 +43,7 @@ def included(paths: Sequence[str]) -> frozenset[str]:
 
 
 def _includes_itself(real: str) -> bool:
-    """Return whether a file leads back to itself. Then xacro expands no file with it."""
+    """Return whether a file includes itself, directly or by others: no expansion of it ends."""
     found: set[str] = set()
     todo = [real]
     while todo and real not in found:

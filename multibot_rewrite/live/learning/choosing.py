@@ -38,7 +38,7 @@ def choose_nodes(graph: System, names: Sequence[str], namespace: str) -> tuple[s
         if name not in times:
             raise UsageError(f"{name}: no node has this name; {_suggestion(name, times)}")
         if not name.startswith(f"{base}/"):
-            raise UsageError(f"{name}: the node is not below --namespace {base}")
+            raise UsageError(f"{name}: it is not below --namespace {base}; leave that out")
     below = (name for name in times if name.startswith(f"{base}/") and not is_tool(name))
     chosen = sorted(set(names) or below)
     if not chosen:

@@ -159,12 +159,13 @@ def _endpoints(ends: Iterable[End], place: _SeenPlace) -> dict[_Slot, Endpoint]:
 
 
 def _types_by_endpoint(ends: Iterable[End]) -> Seen:
+    """Return by endpoint its valid types, sorted; raises UsageError for an impossible one."""
     types: dict[EndpointId, set[str]] = defaultdict(set)
     for end in ends:
         check_seen_name(end.kind, end.name)
         if (end.kind == TOPIC) != (end.role in (PUBLISHES, SUBSCRIBES)):
             raise UsageError(
-                f"{end.node} {end.role} the {end.kind} {end.name}, which is not possible in ROS"
+                f"{end.node} {end.role} the {end.kind} {end.name}, which ROS has not: look again"
             )
         found, valid = types[EndpointId(end.kind, end.role, end.name)], _TYPE.fullmatch(end.type)
         # Another type counts as not known.

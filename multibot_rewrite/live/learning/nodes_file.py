@@ -33,9 +33,7 @@ _NO_WRAP = 1 << 30
 
 
 def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary) -> str:
-    """Return the text of a file with the nodes and one node set of them.
-
-    Raises ProofError if reading it does not give the same nodes."""
+    """Return the text of a file with nodes and a node set; raises ProofError if it reads otherwise."""
     text = "".join(f"{line}\n" for line in _file_lines(learned, node_set))
     facts = tuple(node.facts for node in learned)
     try:
@@ -146,7 +144,7 @@ class _Seen(NamedTuple):
         return found
 
     def qos(self, end: Endpoint) -> Qos | None:
-        """Return its QoS, if the graph shows it."""
+        """Return the QoS of an endpoint, if the graph shows it."""
         return next((it.qos for it in self.ends(end) if it.qos), None)
 
     def transports(self, end: Endpoint) -> Iterator[Endpoint]:

@@ -124,7 +124,7 @@ def _viewed_robot(it: RewrittenRobot, template: Template, graph: System | None) 
 
 
 def _names_before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str, int]]:
-    """Return the old name and line of each link and joint; nested models are matched by order."""
+    """Return (old name, line) by kind and new name of links and joints; nested ones by order."""
     root = it.member.source.root
     if root.tag == it.member.described.document.root.tag == "sdf":
         old, lines = load_sdf(root, ""), lines_by_name(root)
@@ -190,11 +190,12 @@ def heard_trees(
 
 
 def transform_of(edge: Edge) -> tuple[float, ...]:
-    """Return its transform, if all of it is numbers."""
+    """Return the seven numbers of a transform; empty unless all are numbers."""
     return edge.transform if all(map(isfinite, edge.transform)) else ()
 
 
 def _frames_below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
+    """Yield the frames below a root whose poses were heard."""
     children = lists_by_key((it.parent, it) for it in above.values())
     todo = [root]
     for name in todo:  # grows
@@ -205,7 +206,7 @@ def _frames_below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
 
 
 def moved_links(joints: Iterable[Joint], heard: Mapping[str, tuple[float, ...]]) -> Iterator[str]:
-    """Yield links on fixed joints that were heard elsewhere, and how far off; ``heard`` is by link."""
+    """Yield in words each link on a fixed joint that was heard elsewhere; ``heard`` is by link."""
     for it in joints:
         if it.type == "fixed" and heard.get(it.child):
             metres, angle = offset_between(it, heard[it.child])

@@ -45,7 +45,7 @@ def load_sdf(root: _Element, source: str) -> Model:
     """
     model = next(root.iter("model"), None)
     if model is None:
-        raise InputError(f"{source}: it has no <model> to show")
+        raise InputError(f"{source}: it has no <model> to show; name an SDF of a robot")
     frames = Frames({it.name: it for it in named_in(model, "")}, source)
     links = [it for it in frames.named.values() if it.tag == "link"]
     ends = ends_of(frames)

@@ -160,7 +160,7 @@ def _first_messages(reader: Reader, connections: list[Connection], many: int) ->
 def _transforms(
     reader: Reader, topic: str, connections: list[Connection]
 ) -> tuple[Collection[Edge], bool]:
-    """Return the last transforms on a tf topic, and whether some could not be read."""
+    """Return the last transforms on a tf topic; and whether some could not be read."""
     found: dict[tuple[str, str], Edge] = {}
     paces: dict[tuple[str, str], Pace] = {}
     static = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic

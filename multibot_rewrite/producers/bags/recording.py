@@ -85,5 +85,5 @@ def _heard_on(it: RecordedTopic) -> Iterable[Heard]:
 
 
 def counted(found: Recording) -> dict[str, int]:
-    """Return how many messages were recorded of each topic."""
+    """Return by topic how many messages were recorded."""
     return {it.name: it.messages for it in found.topics}

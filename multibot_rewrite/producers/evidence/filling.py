@@ -73,7 +73,7 @@ def sent_with(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTran
 
 
 def lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
-    """Return what finds the value of a parameter for a condition, or the default that names a frame."""
+    """Return a function that finds the value of a parameter, or the default that names a frame."""
     defaults = {it.parameter: it.default for it in node.frames}
     return lambda name: values[name].value if name in values else defaults.get(name)
 
@@ -145,7 +145,7 @@ def _with_chosen_type(endpoint: Endpoint, value_of: Values) -> Endpoint:
 def _is_decided(
     raw: Endpoint, lists: Iterable[str], values: Mapping[str, Given], of_set: Iterable[Endpoint]
 ) -> bool:
-    """Return whether the parameters decide if it exists, or its name."""
+    """Return whether the parameters decide whether an endpoint exists, or its name."""
     needed = list(lists)
     if needed:
         return _are_listed(needed, values)
@@ -240,7 +240,7 @@ def _named(endpoint: Endpoint, values: Mapping[str, Given], ending: str) -> Iter
 
 
 def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[str, str]]:
-    """Yield the first parameter's topics, or all of a pattern; an empty text means no topic."""
+    """Yield (parameter, topic) for the first parameter that is set, or all of a pattern; "" is none."""
     found: list[tuple[str, str]] = []
     for one in parameter.split(ALSO):
         found = []

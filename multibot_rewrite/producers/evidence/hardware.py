@@ -203,7 +203,7 @@ def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Cl
 
 
 def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed, Place]]:
-    """Yield command interfaces that two parameters of a controller claim, with the first's place."""
+    """Yield (command interface, place of the first claim) that two parameters of a controller claim."""
     values, first = {**node.values, TYPE: Given(node.program, node.place)}, dict[str, Place]()
     for claim in (it for it in claims if it.kind == COMMAND):
         for made in _filled_templates(claim.template, _Made("", claim.condition, None), values):
@@ -214,7 +214,7 @@ def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed,
 
 
 def _lookup(values: Mapping[str, Given]) -> Values:
-    """Return what finds a value by its parameter; it gives None for one that is not set."""
+    """Return a function that finds the value of a parameter; it gives None for one that is not set."""
     return lambda name: values[name].value if name in values else None
 
 
@@ -234,7 +234,7 @@ def _filled_templates(template: str, made: _Made, values: Mapping[str, Given]) -
 def _choices(
     part: re.Match[str], values: Mapping[str, Given]
 ) -> Iterator[tuple[str, Place | None]]:
-    """Yield the values of one place of a template, each with where it is written."""
+    """Yield (value, where it is written) for one place of a template."""
     if part["words"]:
         yield from ((it, None) for it in part["words"].split(","))
         return

@@ -116,7 +116,7 @@ def _sections(document: YamlText) -> tuple[_Section, ...]:
 
 
 def _flat_values(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
-    """Yield dotted names of parameters and their values, for any robot."""
+    """Yield (dotted name, value) of a section's parameters, for any robot."""
     for key, node in pairs(body):
         name = f"{above}{without_robot(str(key.value))}"
         if below := names_below(node):
@@ -141,7 +141,7 @@ class _Controller(NamedTuple):
 def _controllers(
     sections: Sequence[_Section], managers: Collection[str]
 ) -> Iterator[tuple[str, _Controller]]:
-    """Yield each controller with its type, below the name of the manager's namespace."""
+    """Yield (name, controller) of those in managers' sections, below the manager's namespace."""
     for section in sections:
         above, _, last = section.name.rpartition("/")
         # A renamed one is called controller_manager_robot1, for example.
@@ -159,7 +159,7 @@ def _controllers(
 
 
 def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[str, _Controller]]:
-    """Yield controllers whose own section has their type: a spawner hands it on to the manager."""
+    """Yield (name, controller) of those whose own section has a type: a spawner hands that on."""
     for section in sections:
         given = section.values.get(OWN_TYPE)
         if section.name and given is not None and given.value in known.types:
@@ -168,7 +168,7 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
 
 
 def _by_name(sections: Sequence[_Section]) -> Callable[[str], list[_Section]]:
-    """Return what finds the sections of a node, in order: those of its name, all with wildcards."""
+    """Return a function that finds a node's sections, in order: those of its name, and wildcards."""
     wild: list[tuple[int, _Section]] = []
     named: dict[str, list[tuple[int, _Section]]] = {}
     for number, it in enumerate(sections):

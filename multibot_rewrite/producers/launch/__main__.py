@@ -123,6 +123,7 @@ def _listened(ours: socket.socket, seconds: float) -> object:
     end = monotonic() + seconds
 
     def read(count: int) -> bytes:
+        """Return so many bytes of the child's; raises EOFError, and TimeoutError when time is over."""
         parts = bytearray()
         while len(parts) < count:
             ours.settimeout(max(end - monotonic(), 0.001))

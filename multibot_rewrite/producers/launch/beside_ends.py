@@ -31,7 +31,7 @@ Sent = Mapping[str, Sequence[Edge]]
 
 
 def edges_of(it: Run, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
-    """Yield the transforms of a node, each with its topic."""
+    """Yield (topic, transform) for what a node sends."""
     sent = [end.name for end in it.fact.endpoints if end.role == PUBLISHES and not end.when]
     whole = publishes_a_tree(it)
     for edge in (tree_of(it) or ()) if whole else _with_prefix(prefix_of(it), sent_by(it.fact, "")):
@@ -43,7 +43,7 @@ def edges_of(it: Run, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
 
 
 def passed_on(it: Run, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Edge]]:
-    """Yield the transforms of the simulator that a bridge passes on."""
+    """Yield (topic, transform) for what a bridge passes on from the simulator."""
     for end, own in bridged_by(it):
         if (end.role, end.type) == (PUBLISHES, TF_TYPE):
             full = resolve_bound(end.name, TOPIC, bound)

@@ -70,7 +70,7 @@ def passes_topics_on(package: str, program: str) -> bool:
 
 
 def files_in(node: LaunchedNode) -> Iterator[str]:
-    """Return the files that a bridge of a launch file is told; they need not be here."""
+    """Yield the files that a launch file tells a bridge to read; they need not be here."""
     if passes_topics_on(node.package, node.executable):
         values = (load_yaml(it.text, it.file or node.place.file) for it in node.parameters)
         sections = (one for it in values if isinstance(it, dict) for one in it.values())
@@ -244,7 +244,7 @@ def _ends(it: Run, notes: list[LaunchNote]) -> Iterator[End]:
 
 
 def _domains_and_files(words: Sequence[str]) -> tuple[dict[str, object], list[str]]:
-    """Split the arguments of a bridge: the domains that options give, as a file has them; the files."""
+    """Return (domains by the keys of a bridge's file, files) in a domain_bridge's arguments."""
     options: dict[str, object] = {}
     paths, left = [], list(words)
     while left:

@@ -98,7 +98,7 @@ class _Program:
         return self.made, self.made[:0]
 
     def wait(self, timeout: float | None = None) -> int:
-        """Return 0: it has ended."""
+        """Return 0, the exit code: the program is over."""
         return 0
 
     poll = kill = terminate = wait
@@ -120,6 +120,8 @@ def see_no_machine(lost: list[str]) -> None:
             lost.append(said)
 
     def blind(look: Callable[..., Any], answer: Callable[[str], Any]) -> Callable[..., Any]:
+        """Return a function: ``answer`` for a path of the machine, for another what ``look`` does."""
+
         def looked(path: Any = os.curdir, *words: Any, **options: Any) -> Any:
             named = path is not None and not isinstance(path, int)
             place = os.path.abspath(os.fsdecode(path)) if named else ""
@@ -155,6 +157,7 @@ def faults(context: Any) -> list[str]:
 
 
 def _command_output(self: Any, context: Any, lines: list[str]) -> str:
+    """Return what a ``Command`` substitution prints, as far as known; note its line and faults."""
     line = text(self.command, context)
     # What is kept off reads nothing of this robot.
     if OFF not in context.launch_configurations:
@@ -191,6 +194,7 @@ def xacro_of(line: str) -> FileRead | None:
 
 
 def _xacro_in(words: Sequence[str]) -> FileRead | None:
+    """Return the one xacro and its arguments in a command; None for none or several."""
     files = [it for it in words if ":=" not in it and not it.startswith("-")]
     given = (it.partition(":=") for it in words if ":=" in it)
     pairs = tuple((name, value) for name, _, value in given)
@@ -213,6 +217,7 @@ def _ros2_text(words: Sequence[str]) -> str:
 
 
 def _postfix_text(words: Sequence[str]) -> str:
+    """Return what ``urdf-postfix`` prints for these arguments; empty where it would write a file."""
     if any(it.startswith("-") and it.partition("=")[0] not in _OPTIONS for it in words):
         return ""
     main = import_module(_POSTFIX).main

@@ -57,10 +57,7 @@ class NotFencedError(Exception):
 
 
 def confine(order: LaunchOrder, folder: str, more: Sequence[str], seconds: float) -> None:
-    """Put the fences around this process, for good: it may write in ``folder`` and read ``more``.
-
-    Raises NotFencedError.
-    """
+    """Fence in this process, which may write in ``folder`` and read ``more``; raises NotFencedError."""
     access = Access(order.file, Reach(order.roots), None)
     files = Files((*_readable_paths(access), *more), (folder, os.devnull))
     hidden = {it for it in os.environ if not it.startswith((*VARIABLES, *_PLAIN))}
@@ -82,6 +79,7 @@ def _asked(hidden: set[str]) -> Callable[[Any, str], str]:
     look_up = type(os.environ).__getitem__
 
     def asked(environ: Any, name: str) -> str:
+        """Return a variable's value; raises PermissionError for a hidden one."""
         if name in hidden:
             told = "is set, but a launch file sees ROS's variables alone; give --trust"
             raise PermissionError(f"the environment variable {name!r} {told}")
@@ -152,12 +150,14 @@ class Relay:
         return self.child
 
     def _start(self, _: str) -> bytes:
+        """Start a xacro child in place of the last one; return an empty answer."""
         self.children.close()
         self.child = self.children.enter_context(child(self.seconds))
         self.asked = False
         return b""
 
     def _send(self, data: str) -> bytes:
+        """Send bytes to the child, the order with its fences; return an empty answer."""
         raw = data.encode("latin-1")
         self._one().send(raw if self.asked else self._fenced(raw))
         self.asked = True
@@ -178,6 +178,7 @@ def relayed(ask: Ask) -> Callable[[float], AbstractContextManager[Relayed]]:
 
     @contextmanager
     def started(_: float) -> Iterator[Relayed]:
+        """Yield a child that the parent runs; raises InputError if it refuses."""
         try:
             ask(START, "")
         except RefusedError as error:

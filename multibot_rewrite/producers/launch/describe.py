@@ -153,7 +153,7 @@ def _text(value: Any, here: Visit) -> str:
 
 
 def _known(value: Any, here: Visit, what: str = "") -> str:
-    """Return the value of substitutions; empty for a missing package, and ``what`` is then noted."""
+    """Return the value of substitutions; empty for a missing package, which is noted as ``what``."""
     made = _text(value, here)
     if made != GONE:
         return made
@@ -456,6 +456,7 @@ def _texts_of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterTe
 
 
 def _text_of_values(values: Any) -> ParameterText:
+    """Return parameters as the text of a file for any node."""
     body = {"/**": {"ros__parameters": {name: _plain_value(it) for name, it in values.items()}}}
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
     return ParameterText("", yaml.dump(body, None, dumper, sort_keys=False))
@@ -483,6 +484,7 @@ def _parameter_texts(
 
 
 def _text_of_file(path: str, here: Visit) -> Iterator[ParameterText]:
+    """Yield a parameter file's text, or note why it is not known."""
     if not os.path.isfile(path) or os.path.getsize(path) > LIMIT:
         lost = missing_package(FileNotFoundError(path))
         said = f"of the package {lost!r}, which is not installed here, is not known"

@@ -35,7 +35,7 @@ class Entity:
             yield from it.every()
 
     def take(self, name: str) -> Any:
-        """Return a value and remove it; raises AttributeError without."""
+        """Return the value of an attribute and remove it; raises AttributeError without."""
         if name not in self.values:
             raise AttributeError(f"Attribute {name!r} not found in Entity {self.tag!r}")
         return self.values.pop(name)

@@ -24,7 +24,7 @@ OWN = "parameters of a launch file"
 
 @lru_cache(maxsize=64)
 def has_sections(it: ParameterText) -> bool:
-    """Return whether it is a parameter file with sections of nodes."""
+    """Return whether a text is a parameter file with sections of nodes."""
     try:
         return any(True for _ in raw_sections(document_of(it.file, it.text)))
     except InputError:

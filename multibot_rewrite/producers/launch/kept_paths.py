@@ -74,7 +74,7 @@ def kept_file(path: str) -> str:
 
 
 def with_real_paths(it: Any) -> Any:
-    """Return a value whose texts name sources in place of links, and missing packages by name."""
+    """Return a value with ``real_paths`` of each of its texts, at any depth."""
     if isinstance(it, str):
         return real_paths(it)
     if isinstance(it, dict):
@@ -138,6 +138,8 @@ def source_of(path: str, context: Any) -> str:
 
 
 def _noting_constructor(made: Callable[..., None]) -> Callable[..., None]:
+    """Return a constructor of substitutions that note which file they make another one of."""
+
     @wraps(made)
     def wrapping(self: Any, *words: Any, **options: Any) -> None:
         kind = type(self)
@@ -153,6 +155,7 @@ def _note_source(made: Callable[[Any, Any], Any], read: Callable[[Any], Any]) ->
 
     @wraps(made)
     def keeping(self: Any, context: Any) -> Any:
+        """Return the path that is made, after noting its source."""
         path = made(self, context)
         if str(path) not in getattr(context, _MADE_OF, {}):
             # What is read may be made as well, and kept meanwhile.

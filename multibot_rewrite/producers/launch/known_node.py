@@ -45,6 +45,7 @@ def as_started(node: NodeFacts, executable: str, words: Collection[str]) -> Node
     """Return the node as this program has it with these arguments. A component runs in any program."""
 
     def decide(it: Condition) -> bool | None:
+        """Return whether a condition about program or arguments holds; None for another one."""
         if it.how == ":" and it.parameter == PROGRAM and "::" not in executable:
             return executable in it.values
         if it.parameter.startswith("-") and it.how in ("set", "unset"):
@@ -62,6 +63,7 @@ def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given])
     options = dict(pairwise(words))
 
     def decide(it: Condition) -> bool | None:
+        """Return True if a file names what a condition asks for; None if that is open."""
         if it.how != "names":
             return None
         given = {**{name: one.value for name, one in values.items()}, **options}
@@ -89,6 +91,7 @@ def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeF
     """Return the node with the ends that it has while these topics have subscribers."""
 
     def decide(it: Condition) -> bool | None:
+        """Return True if somebody subscribes to a topic of the condition; None if that is open."""
         own = it.values if it.how == ":" and it.parameter == HEARD else ()
         return any(resolve_bound(name, TOPIC, bound) in heard for name in own) or None
 
@@ -107,7 +110,7 @@ def _with_decided_ends(node: NodeFacts, decide: Decide) -> NodeFacts:
 
 
 def _has(path: str, words: Sequence[str]) -> bool:
-    """Return whether one of the words is in a file, except in comments and however it is spaced."""
+    """Return whether a file has one of the words, except in comments and however it is spaced."""
     if not os.path.isfile(path):
         return False
     text = read_file(path).decode("utf-8", "replace")

@@ -116,6 +116,7 @@ def _with_namespace(text: str, namespace: str) -> str:
 
 
 def _model_text(words: Mapping[str, str]) -> str:
+    """Return the description in a spawner's arguments, of its file or as it is; or empty."""
     path = words.get("-file", "")
     return read_file(path).decode() if os.path.isfile(path) else words.get("-string", "")
 
@@ -175,6 +176,7 @@ def sent_in_simulator(models: Iterable[Model]) -> dict[str, list[Edge]]:
 
 
 def _sent_by_systems(model: Model) -> Iterator[tuple[str, Edge]]:
+    """Yield (topic in the simulator, transform) for what systems of a model send."""
     plugins: dict[int, dict[str, str]] = {}
     for it in (*model.reading.names, *model.reading.missed):
         if it.tag == "plugin" and it.kind in (FRAME, TOPIC):

@@ -167,7 +167,7 @@ def with_launched(
 
 
 def _publishes_another(it: LaunchedNode) -> bool:
-    """Return whether a rule for its topic says that it publishes no description of the robot."""
+    """Return whether a node publishes another description than the robot's, by a rule for its topic."""
     old = (old.lstrip("/") for old, _ in it.remappings)
     return it.package == STATE_PUBLISHER and _DESCRIPTION in old
 
@@ -245,7 +245,7 @@ def _handed_to(
 
 
 def _is_built(it: LaunchedNode) -> bool:
-    """Return whether a build makes it from the robot's own files: a spawner or a simulator's node."""
+    """Return whether a build makes the process from the robot's own files: a spawner, for example."""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
     return is_simulator or is_spawner(it) or _is_spawner_of_robot(it)
 

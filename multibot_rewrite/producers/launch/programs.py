@@ -55,17 +55,17 @@ def once_for_all(node: LaunchedNode) -> str:
 
 
 def passes(it: LaunchedNode) -> bool:
-    """Return whether it is no robot's node: a program that ends, a simulator, a launch file."""
+    """Return whether a process is no robot's node: a program that ends, a simulator, a launch file."""
     is_none = not it.package or it.process.is_include
     return is_none or is_spawner(it) or program_of(it) in programs().passing
 
 
 def may_be_off(it: LaunchedNode) -> bool:
-    """Return whether an argument may turn it on: no container, and nothing a fleet starts itself."""
+    """Return whether an argument may turn a node on: no container, none that a fleet starts itself."""
     own = is_spawner(it) or it.executable in _OWN or it.package in programs().simulators
     return not (own or it.executable.startswith("component_container"))
 
 
 def program_of(it: LaunchedNode) -> str:
-    """Return its package and executable, as the tables have them."""
+    """Return a node's ``package/executable``, as the tables have it."""
     return f"{it.package}/{it.executable}"

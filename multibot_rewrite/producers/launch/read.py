@@ -104,7 +104,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
 
 
 def _try_to_read(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
-    """Return the graph; None if something was ``missing`` that now has a stand-in."""
+    """Return the graph; None if a package or file was missing, for which a stand-in was made now."""
     try:
         graph = _visited_graph(order)
     except UnreadableError:

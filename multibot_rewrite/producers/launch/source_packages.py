@@ -55,7 +55,7 @@ def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
 
 @cache
 def _has_python(name: str, folder: str) -> bool:
-    """Return whether it has a Python package of its own name, or CMakeLists.txt installs another."""
+    """Return whether a package has a Python package of its name, or its CMakeLists.txt another."""
     if os.path.isfile(os.path.join(folder, name, "__init__.py")):
         return True
     with suppress(OSError, UnicodeDecodeError):

@@ -105,7 +105,7 @@ class Spawned(NamedTuple):
 
     @property
     def full_name(self) -> str:
-        """Its full name, in the namespace of its manager."""
+        """The controller's full name, in the namespace of its manager."""
         return f"{self.manager.rpartition('/')[0]}/{self.name}"
 
 

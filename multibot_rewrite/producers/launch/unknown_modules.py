@@ -24,7 +24,7 @@ def add_unknown(name: str) -> None:
 
 
 def is_unknown(value: object) -> bool:
-    """Return whether it is such a package, or something taken from it."""
+    """Return whether a value is a package that is not here, or something taken from it."""
     return isinstance(value, Unknown | _Module)
 
 

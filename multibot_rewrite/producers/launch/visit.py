@@ -169,12 +169,14 @@ def _is_a(entity: Any, *names: str) -> bool:
 
 
 def _execute(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    """Run an action of launch; return the entities that come of it."""
     whatever = seen.every and _is_a(entity, *_GIVING)
     found: Iterable[Any] | None = (entity.execute if whatever else entity.visit)(seen.context)
     return found
 
 
 def _visit_include(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    """Note an include; return the entities that come of its launch file."""
     if not wants(entity, seen):
         return None
     include = included(entity, seen)
@@ -201,6 +203,7 @@ def _add_nothing(entity: Any, seen: Visit) -> None:
 
 
 def _visit_node(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    """Note the node that an action starts; nothing comes of it."""
     if not wants(entity, seen):
         return None
     # launch/later.py: an action for a robot gets its options when it runs, or others run in its place.
@@ -314,6 +317,7 @@ def _flat_list(actions: Any) -> list[Any]:
 
 
 def _visit_unknown(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    """Note that it is not known what an action starts; nothing comes of it."""
     if is_unknown(entity):
         # It makes what it starts in code that is not here.
         entity.perform(seen.context)
@@ -328,6 +332,7 @@ Handler = Callable[[Any, Visit], "Iterable[Any] | None"]
 
 @cache
 def _handlers() -> Mapping[str, Handler]:
+    """Return the function for each class of actions, by its name."""
     return {
         **dict.fromkeys(names().executed.split(), _execute),
         **dict.fromkeys(names().passed.split(), _add_nothing),

@@ -79,7 +79,7 @@ class SensorTopic(NamedTuple):
 
     @property
     def has_rate(self) -> bool:
-        """Return whether several messages are worth it: small ones of one publisher, now and then."""
+        """Return whether a topic's rate is worth several messages: small ones of one publisher."""
         return (
             self.type != CLOCK_TYPE
             and self.publishers == 1

@@ -80,7 +80,7 @@ class SecondParticipant:
         return missed
 
     def _joined(self) -> GraphSession | None:
-        """Return its session once another machine is seen; None before."""
+        """Return the second participant's session, open once another machine is seen; None before."""
         node = self._session.node
         found = queries.participants(node)
         if len(queries.on_this_machine(node, found)) == len(found):

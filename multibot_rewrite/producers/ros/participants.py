@@ -53,11 +53,10 @@ def make_room() -> None:
 
 
 def lost_by_us() -> int:
-    """Return how many datagrams the UDP sockets of this process have lost; 0 if unknown.
+    """Return how many datagrams this process's UDP sockets have lost; 0 if unknown.
 
     What another process lost need not be waited for: it offers its endpoints again after 1 s, and that
-    the names of its nodes have not come is noticed (``queries.without_nodes``).
-    """
+    the names of its nodes have not come is noticed (``queries.without_nodes``)."""
     told = _ask_own(lambda own: own.getsockopt(socket.SOL_SOCKET, *_MEMORY_INFO))
     return sum(int.from_bytes(it[_DROPS], sys.byteorder) for it in told)
 

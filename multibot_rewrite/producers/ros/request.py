@@ -62,7 +62,7 @@ def to_text(order: tuple[Any, ...]) -> str:
 
 
 def from_text(text: str) -> Request:
-    """Read what ``to_text`` made of a Request."""
+    """Return the Request that ``to_text`` wrote."""
     timeout, expected, *others = json.loads(text)
     return Request(float(timeout), tuple(expected), *others)
 

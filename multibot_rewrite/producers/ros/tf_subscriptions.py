@@ -76,12 +76,17 @@ Callback = Callable[[Any, Mark], None]
 Subscribe = Callable[[str, str, bool, Callback], "Callable[[], None] | str"]
 
 
+def _topic(end: End) -> Topic:
+    return end.name, end.type, bool(end.qos and end.qos.durability == "TRANSIENT_LOCAL")
+
+
 class TfSubscriptions:
     """Subscriptions to all tf topics; ``last`` has each transform, empty if latched ones differ."""
 
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe
         self._open: dict[Topic, Callable[[], None]] = {}
+        self._senders: set[End] = set()
         self._failed: dict[str, str] = {}
         self._received: dict[ReceivedTransform, float] = {}
         self._voices: dict[ReceivedTransform, Voices] = {}
@@ -93,17 +98,18 @@ class TfSubscriptions:
     def update(self, endpoints: Iterable[End], substitutes: bool) -> None:
         """Subscribe to every tf topic that is published, and to no other."""
         types = TF_TYPES if substitutes else TF_TYPES[:1]
-        topics = {
-            (end.name, end.type, end.qos.durability == "TRANSIENT_LOCAL")
-            for end in endpoints
-            if end.type in types and end.role == PUBLISHES and end.qos
-        }
-        for topic in self._open.keys() - topics:
+        senders = {it for it in endpoints if it.type in types and it.role == PUBLISHES and it.qos}
+        topics = {_topic(it) for it in senders}
+        left, there = (
+            {_topic(it)[::2] for it in self._senders - senders},
+            {it[::2] for it in topics},
+        )
+        self._senders = senders
+        # Who comes after a sender that left is no second one; what is latched comes again.
+        self._voices = {it: own for it, own in self._voices.items() if it[:2] in there - left}
+        self._received = {it: at for it, at in self._received.items() if it[:2] in there}
+        for topic in [it for it in self._open if it not in topics or (it[2] and it[::2] in left)]:
             self._open.pop(topic)()
-            kept = (
-                it for it in self._received.items() if (it[0].topic, it[0].latched) != topic[::2]
-            )
-            self._received = dict(kept)
         for topic in sorted(topics - self._open.keys()):
             name, _, latched = topic
             end = self._subscribe(*topic, partial(self._receive, name, latched))

@@ -53,7 +53,7 @@ ONLY_TOPICS = Caveat("topics-only", True, _NO_SERVICE)
 
 
 def is_message(value: object) -> bool:
-    """Return whether it is a message and not a snapshot of ours, which has a schema."""
+    """Return whether a value is a message and not a snapshot of ours, which has a schema."""
     return (
         isinstance(value, dict) and "nodes" in value and not value.keys() & {"schema", "endpoints"}
     )
@@ -74,7 +74,7 @@ def from_message(value: dict[str, Any], file: str) -> System:
 
 
 def from_yaml(text: str, file: str) -> System:
-    """Read what ``ros2 topic echo --once --full-length`` printed; raises InputError."""
+    """Return the snapshot in what ``ros2 topic echo --once --full-length`` printed; or InputError."""
     if _CUT_SHORT.search(text):
         hint = "print it with ros2 topic echo --once --full-length"
         raise InputError(f"{file}: the message is cut short by '...'; {hint}")
@@ -100,7 +100,7 @@ def _without_parameters(value: dict[str, Any]) -> dict[str, Any]:
 def _checked_name(name: str, file: str) -> str:
     """Return a full name; raises InputError for another one."""
     if not name.startswith("/"):
-        raise InputError(f"{file}: {name!r} is not a full name that starts with /")
+        raise InputError(f"{file}: {name!r} is not a full name, write a slash in front")
     return name
 
 
@@ -151,7 +151,7 @@ def _qos(topic: "Topic", file: str) -> Qos | None:
     )
     for known, number in given:
         if not 0 <= number < len(known):
-            raise InputError(f"{file}: {topic.name}: qos: there is no policy {number}")
+            raise InputError(f"{file}: {topic.name}: no policy {number}; record the graph again")
     history, reliability, durability, liveliness = (known[number] for known, number in given)
     if {reliability, durability} == {UNKNOWN}:
         return None

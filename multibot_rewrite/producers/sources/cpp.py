@@ -93,7 +93,7 @@ def _declarator(node: Node) -> Node | None:
 
 
 def _scope_of(node: Node) -> tuple[str, str]:
-    """Return the class and function that something is in."""
+    """Return (class, function) that a node of the syntax tree is in."""
     function = node if node.type == "function_definition" else _outer(node, "function_definition")
     name = ""
     if function is not None and (declarator := _declarator(function)) is not None:
@@ -106,7 +106,7 @@ def _scope_of(node: Node) -> tuple[str, str]:
 
 
 def _condition(node: Node) -> str:
-    """Return the text of the nearest ``if`` around it, in its function."""
+    """Return the text of the nearest ``if`` around a node, in its function."""
     above = node
     while above.parent is not None and above.parent.type not in ("function_definition",):
         below, above = above, above.parent
@@ -119,7 +119,7 @@ def _condition(node: Node) -> str:
 
 
 def _conditions_before(node: Node) -> str:
-    """Return all conditions before it in its function: around it, and where the function may end."""
+    """Return all conditions before a node in its function: around it, and of earlier exits."""
     found, above = [], node
     while above.parent is not None and above.parent.type != "function_definition":
         below, above = above, above.parent
@@ -223,6 +223,7 @@ def _read_call(node: Node, place: Place) -> Iterator[Call | Value]:
 
 
 def _made_object(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
+    """Return the making of an object as a call of its class."""
     owner, inside = _scope_of(node)
     name = "" if MESSAGE.search(type_.partition("<")[0]) else last(type_)
     own = (name, template_arguments(type_), given, "", _condition(node), _at(node, place))

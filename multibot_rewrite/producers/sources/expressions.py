@@ -60,7 +60,7 @@ def template_arguments(type_: str) -> tuple[str, ...]:
 
 
 def is_node(text: str) -> bool:
-    """Return whether this argument is a node, or a part of one."""
+    """Return whether an argument is a node, or a part of one."""
     return _NODE.fullmatch(text) is not None
 
 
@@ -94,7 +94,7 @@ def dotted(node: Node | None) -> list[str]:
 
 
 def callee(function: Node) -> tuple[str, tuple[str, ...], str]:
-    """Return its last name, its template arguments, and the object whose method it is."""
+    """Return (last name, template arguments, object whose method it is) of what is called."""
     full, on = text_of(function), ""
     if function.type == "field_expression":
         on = evaluated(function.child_by_field_name("argument"))

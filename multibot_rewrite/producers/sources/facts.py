@@ -126,6 +126,7 @@ def _node_source(
     events: Sequence[Event],
     release: str,
 ) -> NodeSource:
+    """Return what a program does: endpoints, parameters, transforms, and what is left open."""
     named = [it for it in events if isinstance(it, Named)]
     plain = dict.fromkeys(it.name for it in named if not check_node_name(it.name))
     word = program.rpartition("::")[2].removesuffix(".py")
@@ -235,7 +236,7 @@ def _names_in_rounds(text: str) -> Iterator[str]:
 
 
 def _names_by_setting(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, str]]:
-    """Yield a name, the parameter that sets it, and a condition: by the default, and as it is set."""
+    """Yield (name, parameter that sets it, condition): by the default, and as it is set."""
     parts = text.split("<")
     params = [it.partition(">")[0] for it in parts[1:]]
     asked = list(dict.fromkeys(it[1:] for it in params if it.startswith("@") and "{" not in it))

@@ -194,7 +194,7 @@ def _calls_of_file(folder: str, known: dict[str, str], depth: int) -> Iterator[C
 
 
 def _variables_set_by(call: CmakeCall) -> Iterator[tuple[str, str]]:
-    """Yield the variables that a call sets."""
+    """Yield (variable, value) for each variable that a call sets."""
     name, words = call.name, call.words
     if name == "set" and words:
         yield words[0], ";".join(words[1:])
@@ -260,7 +260,7 @@ def _python_start(folder: str, program: str) -> Start | None:
 
 @lru_cache(maxsize=64)
 def _entry_points(folder: str) -> tuple[tuple[str, str, str], ...]:
-    """Return name, module and function of each entry point."""
+    """Return (name, module, function) of each entry point."""
     lines = start_of_file(folder, "setup.cfg").splitlines()
     words = [*_setup_strings(start_of_file(folder, "setup.py")), *lines]
     found = (_ENTRY.fullmatch(it) for it in words)
@@ -315,7 +315,7 @@ def _existing_sources(folder: str, words: tuple[str, ...], any_end: bool = False
 
 
 def _component_start(folder: str, class_: str) -> Start | None:
-    """Return the class of a component, and the file that registers it."""
+    """Return where a component starts: its class, and the file that registers it; None without."""
     last = class_.rpartition("::")[2]
     for path in sources_in(folder):
         names = () if path.endswith(".py") else COMPONENT.findall(start_of_file(path))

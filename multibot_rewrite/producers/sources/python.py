@@ -79,7 +79,7 @@ def read_python(text: str, place: Place) -> Source:
 
 
 def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
-    """Yield names of ROS types: ``from nav_msgs.msg import Odometry``."""
+    """Yield (name, type) of ROS types: ``from nav_msgs.msg import Odometry``."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
             for alias in node.names:
@@ -140,7 +140,7 @@ def _read_function(node: Any, owner: str, function: str, place: Place) -> Constr
 
 
 def _assigned_values(node: ast.AST) -> Iterator[tuple[str, str]]:
-    """Yield names that a piece of code gives a value, and the value."""
+    """Yield (name, value) for names that a piece of code gives a value."""
     if isinstance(node, ast.Assign):
         for it in node.targets:
             yield from _pairs(it, node.value)
@@ -157,7 +157,7 @@ def _assigned_values(node: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def _loop_variables(node: ast.For | ast.comprehension) -> Iterator[tuple[str, str]]:
-    """Yield the variable of a loop over a list; behind a number if it is enumerated."""
+    """Yield (variable, value) of a loop over a list; behind a number if it is enumerated."""
     target, over = node.target, _iterated(node.iter)
     pair = isinstance(target, ast.Tuple) and len(target.elts) == 2
     if isinstance(target, ast.Tuple) and pair and _text(node.iter) == ENUMERATED:
@@ -178,7 +178,7 @@ def _iterated(node: ast.expr) -> str:
 
 
 def _pairs(target: ast.expr, value: ast.expr | None) -> Iterator[tuple[str, str]]:
-    """Yield the names that an assignment sets, with their values."""
+    """Yield (name, value) for the names that an assignment sets."""
     if isinstance(target, (ast.Tuple, ast.List)):
         same = isinstance(value, (ast.Tuple, ast.List)) and len(value.elts) == len(target.elts)
         each = value.elts if same else [None] * len(target.elts)  # type: ignore[union-attr]
@@ -221,7 +221,7 @@ def _part_under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
 
 
 def _parts_in_order(nodes: list[Any], part: _Part) -> Iterator[_Part]:
-    """Yield what is in a list of statements; behind one that may return, it may not be reached."""
+    """Yield the parts of some statements; those behind one that may return are conditional."""
     for it in nodes:
         if not isinstance(it, ast.AST):
             continue
@@ -244,6 +244,7 @@ def _may_return(node: ast.AST) -> bool:
 
 
 def _condition(node: ast.expr) -> str:
+    """Return the text of a condition; ``OTHERWISE`` for one that is no plain name or call."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
         return negated(_condition(node.operand))
     is_plain = isinstance(node, (ast.Name, ast.Attribute, ast.Call))

@@ -144,7 +144,7 @@ def _text_of_name(names: Names, spot: Spot, name: str, without: str, depth: int)
 
 
 def _candidates(names: Names, spot: Spot, name: str, depth: int) -> Iterator[tuple[Spot, str]]:
-    """Yield what a name is set to, each with where that is read."""
+    """Yield (spot, text) for each value that a name is set to, and where that is read."""
     if name in spot.given:
         yield spot._replace(given=NO_WORDS), spot.given[name]
     inside = _rows_inside(names, spot, name)

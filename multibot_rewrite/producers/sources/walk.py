@@ -222,7 +222,7 @@ def _events_of_call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
 
 
 def _is_new_node(names: Names, text: str) -> bool:
-    """Return whether it is a node that the program has made."""
+    """Return whether a text is a node that the program has made."""
     if text.startswith("<Node:") or text in ("<new Node>", "<new LifecycleNode>"):
         return True
     rows = names.classes.get(text[5:-1], ()) if text.startswith("<new ") else ()
@@ -298,6 +298,7 @@ def _object(
 def _events_of_construction(
     walk: _Walk, made: Made, found: Class, own: Mapping[str, str], spot: Spot
 ) -> Iterator[Event]:
+    """Yield what a class's constructor does, its members' and its bases', too."""
     for function in ("__init__", found.name, ""):
         where = _path(walk.names, found.name, function, found.place.path)
         start = Spot(made, found.name, function, own, spot.asked, where, spot.trail)
@@ -315,7 +316,7 @@ def _events_of_construction(
 
 
 def _known_bases(names: Names, found: Class) -> tuple[tuple[Class, ...], tuple[str, ...]]:
-    """Return the class with its known base classes, and the names of its unknown ones."""
+    """Return the class with its known base classes; and the names of its unknown ones."""
     chain, beyond, waiting = [found], [], [*found.bases]
     while waiting and len(chain) < DEEPEST:
         base = waiting.pop(0).strip("<>")
@@ -346,7 +347,7 @@ def _taken(
 
 
 def _is_base_call(spot: Spot, call: Call, name: str) -> bool:
-    """Return whether it is the constructor of a base that its class calls."""
+    """Return whether a call is of the constructor of a base, in its class."""
     if name == "__init__":
         return True
     inside = spot.function in ("", spot.owner) and not call.on

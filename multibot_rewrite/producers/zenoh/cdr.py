@@ -102,13 +102,13 @@ def _read(data: bytes, read: "Callable[[_Reader], _T]", without: _T) -> _T:
     if mark is None:
         return without
     try:
-        return read(_Reader(data[_HEADER:], mark))
+        return read(_Reader(memoryview(data)[_HEADER:], mark))
     except (struct.error, UnicodeDecodeError, IndexError):
         return without
 
 
 def _texts(reader: "_Reader", many: int) -> list[str]:
-    """Return the first texts after the stamp."""
+    """Return the first ``many`` texts behind the stamp."""
     reader.skip(_STAMP)
     return [reader.text() for _ in range(many)]
 
@@ -136,7 +136,7 @@ def _transform(reader: "_Reader") -> Transform:
 class _Reader:
     """A place in the bytes behind the encapsulation."""
 
-    def __init__(self, data: bytes, mark: str) -> None:
+    def __init__(self, data: memoryview, mark: str) -> None:
         self._data = data
         self._mark, self._number = mark, struct.Struct(f"{mark}I")
         self._at = 0
@@ -167,4 +167,4 @@ class _Reader:
         """Return the next string; its length counts the zero at its end."""
         length, start = self.number(), self._at
         self.skip(length)
-        return self._data[start : self._at].removesuffix(b"\x00").decode()
+        return bytes(self._data[start : self._at]).removesuffix(b"\x00").decode()

@@ -92,6 +92,7 @@ class _Seen(NamedTuple):
 
 
 def _look_in(session: RouterSession, request: Request, router: Router, started: float) -> System:
+    """Return a snapshot by the router's tokens and tf, once all that is expected is there."""
     keys, complete = session.tokens(router.key())
     while not _has_all(keys, request.expected) and time.monotonic() - started < request.timeout:
         time.sleep(POLL_SECONDS)
@@ -112,6 +113,7 @@ def _look_in(session: RouterSession, request: Request, router: Router, started: 
 
 
 def _read_tokens(keys: Iterable[str]) -> _Seen:
+    """Return the tokens of these keys, and the keys that are none."""
     read = {key: read_token(key) for key in sorted(set(keys))}
     found = tuple(token for token in read.values() if token)
     return _Seen(found, tuple(key for key, token in read.items() if token is None))

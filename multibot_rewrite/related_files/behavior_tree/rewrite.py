@@ -49,7 +49,7 @@ def port_data() -> Mapping[str, Any]:
 
 
 def ports_of(document: Document) -> "Iterator[tuple[_Element, Site]]":
-    """Yield every literal with the kind of its name; models for editors are left out."""
+    """Yield (element, site) for every literal of known kind; models for editors are left out."""
     found = {str(it.get("ID", "")): it for it in document.root.iter("BehaviorTree")}
     trees = _Trees(found, str(document.root.get("BTCPP_format", "3")).startswith("4"))
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
@@ -79,14 +79,14 @@ def character(document: Document, at: int) -> int:
 
 
 def is_model(element: "_Element") -> bool:
-    """Return whether the element is in the tree's declarations of nodes."""
+    """Return whether an element is in the tree's declarations of nodes."""
     return element.tag == _MODEL or any(it.tag == _MODEL for it in element.iterancestors())
 
 
 def _model_default(
     document: Document, element: "_Element", start: int, trees: _Trees
 ) -> "Iterator[tuple[_Element, Site]]":
-    """Yield the default of a subtree's model, which BT.CPP reads; other models are for editors."""
+    """Yield (element, site) of a subtree model's default, which BT.CPP reads; not of others."""
     above = element.getparent()
     if above is None or above.tag not in _SUBTREES or "default" not in element.attrib:
         return

@@ -59,7 +59,7 @@ def kinds() -> tuple[MoveitKind, ...]:
 def find_names(
     root: yaml.Node | None, rules: Shapes, names: RelatedNames
 ) -> tuple[list[Site], list[Site], list[Site]]:
-    """Return every name below ``root``, the texts of unknown use, and repeated keys."""
+    """Return three lists: the names below ``root``, texts of unknown use, and repeated keys."""
     # An aliased value counts once for every shape that reaches it.
     walk = _Walk(names, [], set(), set())
     if root is not None:
@@ -77,7 +77,7 @@ def find_names(
 
 
 def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
-    """Yield keys and values of a map, merged ones included."""
+    """Yield (key, value) of a map's entries, merged ones included."""
     for key, value in pairs(node):
         if not is_merge(key):
             yield key, value
@@ -88,7 +88,7 @@ def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node
 
 
 def is_merge(key: yaml.Node) -> bool:
-    """Return whether this is YAML's merge key ``<<``."""
+    """Return whether a key is YAML's merge key ``<<``."""
     return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
 
 
@@ -193,6 +193,7 @@ def _match_of_any(word: str, at: int, value: yaml.Node | None, rules: Shapes) ->
 
 
 def _open_keys(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
+    """Yield (kind, names that must be below, rule) of keys such as ``<joint>``."""
     for key, rule in rules.items():
         if key.startswith("<"):
             kind, _, telling = key[1:-1].partition(" if ")

@@ -40,7 +40,7 @@ def rewrite_moveit(
     try:
         file = read_moveit(document, context)
     except RecursionError:
-        what = "the YAML is nested too deeply for a MoveIt file"
+        what = "the YAML is nested too deeply for MoveIt; write it with fewer levels"
         raise InputError(f"{document.file}:1: {what}") from None
     shift = [Splice(0, 0, document.bom)] if document.bom else []
     more = (*shift, *inserted_namespace(document, context))

@@ -23,12 +23,12 @@ PREFIXED = {"stem": "frame", "joint_stem": "joint", **_PREFIXES}
 
 
 def is_plain(value: str) -> bool:
-    """Return whether it is a name, without substitutions or placeholders for a launch file."""
+    """Return whether a value is a name, without substitutions or placeholders for a launch file."""
     return bool(value) and "<" not in value and NOT_PLAIN.isdisjoint(value)
 
 
 def is_filled(value: str) -> bool:
-    """Return whether it is a text without placeholders, though perhaps no name."""
+    """Return whether a value is a text without placeholders, though perhaps no name."""
     return bool(value) and not PLACEHOLDER.search(value)
 
 
@@ -43,7 +43,7 @@ def joint(context: Context, value: str) -> str:
 
 
 def interface(context: Context, value: str) -> str:
-    """Return ``elbow/position``, or another controller's ``controller/elbow/position``, renamed."""
+    """Return ``elbow/position``, or a chained ``controller/elbow/position``, with the robot's names."""
     owner, slash, last = value.rpartition("/")
     if not slash:
         return value
@@ -121,6 +121,7 @@ def before_frames(between: str) -> Speller:
     """Return a function for the prefix that a node puts before frames at run time."""
 
     def speller(context: Context, value: str) -> str:
+        """Return the prefix with the robot's name, in a layout that uses it; otherwise the value."""
         at_run_time = context.names.naming.layout.at_run_time
         return f"{TAG_SLOT}{between}" if at_run_time else value
 
@@ -213,7 +214,7 @@ def expressible(context: Context, kind: str) -> bool:
 
 
 def is_shared_frame(context: Context, value: str) -> bool:
-    """Return whether it is one frame for all robots, such as map."""
+    """Return whether a value is one frame for all robots, such as map."""
     return value.strip("/") in context.names.naming.shared_frames
 
 

@@ -130,7 +130,7 @@ NOTHING: Mapping[str, str] = {}
 
 
 def is_topic(value: str) -> bool:
-    """Return whether it is a topic name: not empty, not private, without placeholders."""
+    """Return whether a value is a topic name: not empty, not private, without placeholders."""
     if not value or value.startswith("~") or not NOT_PLAIN.isdisjoint(value):
         return False
     return check_name_in_code(value) is None

@@ -94,7 +94,7 @@ def related_file_names(
 def _without_argument(
     robot: str, own: Mapping[tuple[str, str], str]
 ) -> Iterator[tuple[str, str, str]]:
-    """Yield kind, name and text of names in which the robot's name replaces a default."""
+    """Yield (kind, name, text) where the robot's name replaces the default of an argument."""
     # Of ``lbr_A1`` a file with ``$(var robot_name)_A1`` has ``A1``.
     for (kind, plain), text in own.items():
         rest = text.removeprefix(robot)

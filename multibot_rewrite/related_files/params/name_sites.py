@@ -75,7 +75,7 @@ class _Job(NamedTuple):
 def find_names(
     document: YamlText, section: ParamSection, known: KnownNodes, release: str
 ) -> SectionNames:
-    """Look at every parameter of a section; InputError for keys that are not scalars."""
+    """Return the names in all parameters of a section; InputError for keys that are not scalars."""
     names = SectionNames([], set(), [], [], [], [], [])
     tree = section.node.tree if section.node else known.anywhere
     _walk_mapping(_Job(document, section, known, release, names), section.body, [(tree, ())])
@@ -108,7 +108,7 @@ def _walk_mapping(job: _Job, body: yaml.MappingNode, states: list[_State]) -> No
 
 
 def _children(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
-    """Return the known places below for a key."""
+    """Return the places in the tree of known parameters that a key leads to from ``states``."""
     if "." in word:
         for place, part in enumerate(word.split(".")):
             states = _children(states, part, key, place)

@@ -238,7 +238,7 @@ def is_for(section: str, full: str) -> bool:
 def meant_for(
     sections: Sequence[RawSection], reader: str, nodes: Collection[str]
 ) -> RawSection | None:
-    """Return the section that the ``reader`` of that name does not get, since it is elsewhere."""
+    """Return a section meant for ``reader`` that neither it nor another node gets; None without."""
     # None if a section of that name is for it, or if this one is for another node.
     own = [it for it in sections if it.path.rpartition("/")[2] == reader.rpartition("/")[2]]
     if any(is_for(it.path, reader) for it in own):
@@ -247,7 +247,7 @@ def meant_for(
 
 
 def _with_skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
-    """Return the positions with those after each ``**``, which may match nothing."""
+    """Return the positions in a pattern with those reached as ``**`` may match nothing."""
     for at, part in enumerate(parts):
         if at in filled and part == "**":
             filled.add(at + 1)
@@ -255,7 +255,7 @@ def _with_skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
 
 
 def settings(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.ScalarNode, yaml.Node]]:
-    """Yield every parameter by dotted name behind ``above``, with key and value."""
+    """Yield (dotted name behind ``above``, key, value) of every parameter."""
     # Nested and dotted keys are the same.
     for key, value in pairs(node):
         name = f"{above}{key.value}"
@@ -266,12 +266,12 @@ def settings(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.Scala
 
 
 def flattened(node: yaml.Node) -> Iterator[tuple[str, yaml.ScalarNode]]:
-    """Return every parameter by its dotted name, with its key."""
+    """Yield (dotted name, key) of every parameter."""
     return ((name, key) for name, key, _ in settings(node))
 
 
 def scalars(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.ScalarNode]]:
-    """Yield every key with a single value, and that value."""
+    """Yield (key, value) where the value is a single one."""
     for key, value in pairs(node):
         if isinstance(value, yaml.ScalarNode):
             yield key, value

@@ -202,7 +202,7 @@ def takes_sections(document: YamlText) -> bool:
 def _lacking_nodes(
     context: Context, known: KnownNodes, at_run_time: Collection[str], every: Sequence[RawSection]
 ) -> Iterator[tuple[str, list[DefaultLine]]]:
-    """Yield the full names of nodes of the node set without a section, and the lines they need."""
+    """Yield (full name, lines) of each node in the node sets without a section it needs."""
     types = controller_types(every)
     found = identify_sections(every, context, known)
     # Those for nodes of any name are nobody's own.
@@ -226,6 +226,7 @@ def _set_by_all(path: str, every: Iterable[RawSection]) -> set[str]:
 
 
 def _section_key(path: str, context: Context) -> str:
+    """Return the full name of a robot's node for a section; for a pattern one in any namespace."""
     *above, name = path.strip("/").split("/")
     if any(it in ANY or PLACEHOLDER.search(it) for it in above):
         return f"/**/{spelled(context.topics.naming, NAMESPACE_SLOT, 'node', name)}"

@@ -61,7 +61,7 @@ class RvizJob(NamedTuple):
 def make_rviz_job(
     config: RvizConfig, robots: Robots, colours: tuple[Colour | None, ...]
 ) -> RvizJob:
-    """Find the displays that each robot needs for itself: those that change for some robot."""
+    """Return the job with the displays that each robot needs for itself: those that change."""
     own = {
         one.block.start
         for one in leaves(config.displays)
@@ -80,7 +80,7 @@ def leaves(shown: Iterable[RvizItem]) -> Iterator[RvizItem]:
 
 
 def for_one_process(one: RvizItem) -> bool:
-    """Return whether it works only for the robot that the rviz2 process is set up for."""
+    """Return whether an item works only for the robot that its rviz2 process is set up for."""
     return one.flag in (PROCESS, ABSOLUTE)
 
 
@@ -170,7 +170,7 @@ def titled(one: RvizItem, robot: RvizRobot) -> str:
 def entry_blocks(
     document: YamlText, node: yaml.Node | None
 ) -> Iterator[tuple[tuple[yaml.ScalarNode, yaml.Node], Block]]:
-    """Yield the entries of a block map with their lines."""
+    """Yield ((key, value), lines) of each entry of a block map."""
     found = pairs(node)
     if node is None or not is_block(node) or len(found) != len(node.value):
         return

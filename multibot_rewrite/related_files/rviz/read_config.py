@@ -204,7 +204,7 @@ def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
 
 
 def palette(at: int) -> Colour:
-    """Return the colour of the robot at this place, different from all others."""
+    """Return the colour of the robot at this place, unlike all others: red, green, blue."""
     first = rviz_data()["palette"]
     if at < len(first):
         red, green, blue = first[at]
@@ -246,7 +246,7 @@ class RvizRobot(NamedTuple):
 
 
 def is_name(site: Site) -> bool:
-    """Return whether this place holds a name. Blocks of text do not."""
+    """Return whether a site holds a name. Blocks of text do not."""
     return site.kind in NAMED and not site.slot.is_block
 
 

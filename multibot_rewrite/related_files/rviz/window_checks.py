@@ -87,6 +87,8 @@ def config_findings(
 
 
 def _in_one_window(config: RvizConfig, robots: Robots, world: str) -> Iterator[Finding]:
+    """Yield findings for a fixed frame or a view that cannot be that of all robots."""
+
     def differs(node: yaml.Node | None) -> TypeGuard[yaml.ScalarNode]:
         if not isinstance(node, yaml.ScalarNode):
             return False

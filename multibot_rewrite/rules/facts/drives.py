@@ -102,7 +102,7 @@ class Drive(NamedTuple):
 
     @property
     def pairs(self) -> list[tuple[Wheel, Wheel]]:
-        """The wheels of the two sides, in the order they are named in."""
+        """Pairs of a left and a right wheel, in the order they are named in."""
         return list(zip(self.left, self.right, strict=False))
 
 

@@ -58,7 +58,7 @@ def commanded(subject: Subject) -> frozenset[str]:
 
 
 def driving(subject: Subject) -> Iterator[tuple[_Element, _Element]]:
-    """Yield the parameters that name a joint which a plugin commands, with the plugin."""
+    """Yield (parameter, plugin) where a parameter names a joint that the plugin commands."""
     for plugin in simulator_plugins(subject):
         for tag in DRIVES.get(library_of(plugin), ()):
             yield from ((it, plugin) for it in plugin.iterchildren(tag) if text_of(it))

@@ -34,7 +34,7 @@ def claim_is_fixed(subject: Subject, claim: Claim) -> bool:
 
 
 def starts_of(subject: Subject, elements: Collection[_Element]) -> Mapping[_Element, int]:
-    """Return where the tags of some elements start."""
+    """Return by element where its tag starts."""
     wanted = set(elements)
     every = zip(subject.document.elements, subject.document.starts, strict=True)
     return {element: start for element, start in every if element in wanted} if wanted else {}

@@ -62,7 +62,7 @@ def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
 def _meant_by(
     section: Section, given: Iterable[Setting], release: str
 ) -> Iterator[tuple[Setting, str]]:
-    """Yield each parameter that its node is not known to have, and the one probably meant."""
+    """Yield (setting, probable name) for each parameter that its node is not known to have."""
     unknown = [
         it for it in given if not _is_known(section, it) and PARAMETERS not in it.name.split(".")
     ]
@@ -183,7 +183,9 @@ def not_read(file: NamedFile) -> Iterator[Finding]:
         for it, near in _meant_by(section, unread, file.context.distro):
             if not near:
                 message = f"{section.title} declares no parameter {it.name!r}"
-                yield remark_at(it.key, message, f"nothing reads it; see {facts[0].source}")
+                yield remark_at(
+                    it.key, message, f"nothing reads it; delete it, see {facts[0].source}"
+                )
 
 
 def in_the_manager(file: NamedFile) -> Iterator[Finding]:
@@ -250,11 +252,11 @@ def out_of_bounds(file: NamedFile) -> Iterator[Finding]:
                 said = [beyond(*check, it.value) for check in fact.checks]
                 for words in filter(None, said):
                     message = f"{section.title}: {it.name} is {it.value!r}, and has to be {words}"
-                    yield remark_at(it.node, message, f"declared in {fact.source}")
+                    yield remark_at(it.node, message, f"correct it; declared in {fact.source}")
 
 
 def _is_filled_in(value: Value | None) -> bool:
-    """Return whether it is a word in capitals, which a launch file of Nav2 replaces by a value."""
+    """Return whether a value is a word in capitals, which Nav2's launch files replace."""
     return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
 
 

@@ -100,7 +100,9 @@ def contradictions(file: NamedFile) -> Iterator[Finding]:
             left = [name for name in nodes - {*listed} if not differ_in_numbers(word, name)]
             if meant := slip_of(word, sorted(left)):
                 message = f"{it.section.title}: {it.given.name} has {word!r}, and lacks {meant!r}"
-                yield remark_at(it.given.node, message, f"it waits for that node; see {it.source}")
+                yield remark_at(
+                    it.given.node, message, f"list such a node: it waits; see {it.source}"
+                )
 
 
 def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:

@@ -64,7 +64,7 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Finding]:
             ]
             if limits and all(limit is not None for limit in limits):
                 message = f"{what} of {name} is {it.value:g}"
-                hint = "MoveIt plans beyond what the joint takes"
+                hint = "write that: MoveIt plans beyond what the joint takes"
                 yield remark_at(it.node, f"{message}, but the URDF has {limits[0]:g}", hint)
 
 

@@ -84,6 +84,7 @@ def _undeclared_names(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Findi
 
 
 def _kind_of(site: Site) -> str:
+    """Return the kind of a site's name; of an interface that of its joint."""
     return "joint" if site.kind == "interface" else site.kind
 
 
@@ -142,7 +143,7 @@ def of_another_robot(file: NamedFile) -> Iterator[Finding]:
 
 
 def _names_of_another_robot(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
-    """Return the missing names, the number of all names and the first site, if most are missing."""
+    """Return (missing (kind, name) pairs, number of all names, first site), if most are missing."""
     if file.kind != MOVEIT or not file.is_certain:
         return [], 0, None
     closed: dict[tuple[str, str], Site] = {}
@@ -248,7 +249,7 @@ def _robots_names(file: NamedFile) -> dict[str, str]:
 
 
 def _is_claimed(file: NamedFile, site: Site) -> bool:
-    """Return whether it is a frame or absolute topic of the robot; relative topics are common words."""
+    """Return whether a site names a frame or absolute topic of the robot; others are common words."""
     if site.in_key or not is_plain(site.text):
         return False
     if site.kind == "frame":
@@ -258,7 +259,7 @@ def _is_claimed(file: NamedFile, site: Site) -> bool:
 
 
 def _is_interface(file: NamedFile, value: str) -> bool:
-    """Return whether it is an interface like ``elbow/position``; ``imu/data`` is rather a topic."""
+    """Return whether a value is an interface like ``elbow/position``; ``imu/data`` is a topic."""
     *chain, interface = value.split("/")
     kinds = ("joint", "gpio", "sensor") if "." in interface else ("joint", "gpio")
     names = file.context.names

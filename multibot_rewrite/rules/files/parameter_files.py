@@ -311,5 +311,5 @@ _SHAPES: dict[str, Callable[[Any, Any], str]] = {
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """Return whether it is a number, and no truth value."""
+    """Return whether a value is a number, and no truth value."""
     return isinstance(value, int | float) and not isinstance(value, bool)

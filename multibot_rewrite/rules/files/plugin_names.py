@@ -86,7 +86,7 @@ def classes_of_other_releases(file: NamedFile) -> list[str]:
 
 
 def _named_classes(file: NamedFile) -> Iterator[tuple[Demand, Setting, str]]:
-    """Yield the pluginlib classes that a file names, each with the demand and the setting it is in."""
+    """Yield (demand, setting, class) for the pluginlib classes that a file names."""
     for it in demands(file, "class", "classes"):
         # NAME.plugin of each word of a list.
         plugins = (f"{it.section.at}{word}.plugin" for word in words_of(it.given))
@@ -122,7 +122,7 @@ def _class_findings(
 
 
 def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, str, str]:
-    """Return fault, hint and level of a class that the release lacks; empty where it may exist."""
+    """Return (fault, hint, level) of a class that the release lacks; empty where it may exist."""
     there = [it for it, words in known.classes.items() if has_release(words, release)]
     if alike := next((it for it in there if canonical(it) == canonical(name)), ""):
         return f"which is written differently in {release}", f"write {alike}", WARNING
@@ -282,7 +282,7 @@ def without_input(runs: Iterable[Run], release: str) -> Iterator[Finding]:
 
 
 def _none_of(facts: Iterable[Declared], there: Collection[str]) -> Iterator[tuple[str, ...]]:
-    """Yield message, hint and names of parameters where none is there and one has to be."""
+    """Yield (message, hint, *names) of parameters where none is set and one has to be."""
     for fact in facts:
         for words in (words for check, words in fact.checks if check == "required_or"):
             names = (fact.path, *words.split())
@@ -301,7 +301,7 @@ def _not_set(file: NamedFile, section: Section, fact: Declared, words: str) -> I
         there = there or is_set_in_other_file(file, section.title, f"{section.at}{name}")
         if not there and (listed is None or (isinstance(listed, list) and word in listed)):
             message = f"{section.title}: {name} is missing"
-            yield remark_at(first, message, f"the node asks for it; see {fact.source}", WARNING)
+            yield remark_at(first, message, f"add it; see {fact.source}", WARNING)
 
 
 def _blocks(section: Section, path: str) -> Iterator[tuple[str, yaml.ScalarNode]]:

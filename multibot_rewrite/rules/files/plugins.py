@@ -43,7 +43,7 @@ Values = Mapping[str, Value | None]
 
 
 def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Declared, ...]]]:
-    """Return by plugin name its class and that class's parameters; empty for an unknown class."""
+    """Return by plugin's name (class, parameters of the class); none for an unknown class."""
     found: dict[str, tuple[str, tuple[Declared, ...]]] = {}
     for name, class_ in (*_listed(values), *_named_classes(values), *_chain_filters(values)):
         facts = declared_by(class_)
@@ -54,13 +54,14 @@ def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Declared, ...]]]:
 
 
 def _listed(values: Values) -> Iterator[tuple[str, str]]:
-    """Yield the polygons and sources of a collision monitor, recognized by having both lists."""
+    """Yield (name, class) of the polygons and sources of a collision monitor, which has both lists."""
     if all(it in values for it in LISTED):
         for path, class_ in LISTED.items():
             yield from ((it, class_) for it in _words_at(values, path))
 
 
 def _named_classes(values: Values) -> Iterator[tuple[str, str]]:
+    """Yield (name, class) of each plugin, and of each critic of a controller."""
     for path, value in values.items():
         name = path.removesuffix(_PLUGIN)
         if name == path or not isinstance(value, str):

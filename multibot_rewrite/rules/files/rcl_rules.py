@@ -93,7 +93,7 @@ def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
 
 
 def _is_read(node: yaml.Node) -> bool:
-    """Return whether it is a list of values; rcl 9.2 takes ``- key: [a]``, and no maps of two keys."""
+    """Return whether rcl reads a list; 9.2 takes ``- key: [a]``, and no maps of two keys."""
     maps = [it for it in node.value if isinstance(it, yaml.MappingNode)]
     return not maps or any(len(it.value) > 1 for it in maps)
 

@@ -189,6 +189,7 @@ def _section(
     whole: Mapping[str, Setting],
     at: str = "",
 ) -> Section:
+    """Return a section of these settings, each with the declarations that it has."""
     exact = lists_by_key((it.path, it) for it in facts if "<" not in it.path)
     wild = [(it.path.rpartition(".")[2], it) for it in facts if "<" in it.path]
     known = tuple(
@@ -229,7 +230,7 @@ def _wild_declarations(wild: Sequence[tuple[str, Declared]], name: str) -> Itera
 def _plugin_sections(
     title: str, given: Sequence[Setting], whole: Mapping[str, Setting]
 ) -> tuple[list[Section], tuple[Setting, ...]]:
-    """Return a section for each known plugin, its names below it, and the settings of no plugin."""
+    """Return a section for each known plugin with its names below; and the other settings."""
     plugins = plugins_in({it.name: it.value for it in given})
     of: dict[str, list[Setting]] = {}
     for it in given:
@@ -247,7 +248,7 @@ def _plugin_sections(
 def _is_this_controller(
     node: NodeParameters, name: str, type_: str, given: Sequence[Setting]
 ) -> bool:
-    """Return whether it is this controller, not another one that often has the same name."""
+    """Return whether a section is of this controller, not of another that often has its name."""
     if not node.types or type_ in node.types:
         return True
     words = {it.name.partition(".")[0] for it in given}

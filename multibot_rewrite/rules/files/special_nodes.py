@@ -54,6 +54,7 @@ def broken_commands(file: NamedFile) -> Iterator[Finding]:
 
 
 def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
+    """Yield (what is wrong, what to do) for a command of joy_teleop."""
     type_ = _text_of(values, "type")
     if type_ not in _TYPES:
         said = f"is of type {type_!r}" if type_ else "has no type"
@@ -73,6 +74,7 @@ def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
 
 
 def _topic_command_faults(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
+    """Yield (what is wrong, what to do) for a command that publishes on a topic."""
     mapped, fixed = (
         any(it.startswith(f"{name}.") for it in values) for name in (_MAPPINGS, _VALUE)
     )
@@ -132,7 +134,9 @@ def _incomplete_filters(section: Section, filters: _Filters) -> Iterator[Finding
         first = next(iter(parts.values()))
         for word in (it for it in ("name", "type") if it not in parts):
             message = f"{section.title}: filter{number} has no {word}"
-            yield remark_at(first.key, message, "the chain is not configured without", ERROR)
+            yield remark_at(
+                first.key, message, "add it: the chain is not configured without", ERROR
+            )
         name = str(parts["name"].value) if "name" in parts else ""
         if name and name in names:
             message = f"{section.title}: filter{number} has the name {name!r}, as {names[name]} has"

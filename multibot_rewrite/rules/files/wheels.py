@@ -75,7 +75,7 @@ def _wheel_faults(subject: Subject, section: Section) -> list[Finding] | None:
         return None
     node = values[_RIGHT].node
     rolling = rolling_faults(subject.robot, left[0], right[0])
-    hint = "the controller takes them for wheels that roll"
+    hint = "correct it in the description, or name the wheels that roll"
     return [
         *_size_faults(subject, values, left, right),
         *_axis_faults(node, left, right),
@@ -181,6 +181,7 @@ def _costmap_faults(file: NamedFile, section: Section) -> Iterator[Finding]:
 
 
 def _footprint_size(section: Section) -> Size | None:
+    """Return the inner and outer radius of a costmap's footprint; None without a valid one."""
     given = section.whole.get(_FOOTPRINT)
     points = polygon_of(given.value) if given and isinstance(given.value, str) else None
     if not given or not points or len(points) < 3:

@@ -165,7 +165,8 @@ def no_type(launched: Launched) -> Iterator[Finding]:
         manager = spawned.get((it.full_name, it.place), "")
         if it.program == UNTYPED and manager in managers:
             message = f"no parameter of {manager} says the type of {it.name}"
-            yield at(no_type, it.place, message, f"add {it.name}: {{type: ...}} to its parameters")
+            hint = f"add {it.name}: {{type: ...}} to its parameters"
+            yield at(no_type, it.place, message, hint, names=(manager,))
 
 
 @launch_rule("MG725", "controller-without-joints")

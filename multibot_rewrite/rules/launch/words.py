@@ -56,6 +56,7 @@ def implausible(launched: Launched) -> Iterator[Finding]:
 
 
 def _transform_faults(it: Run) -> Iterator[tuple[str, str]]:
+    """Yield (what is wrong, what to do) for a static transform's arguments."""
     given = {one.parameter: one.default for one in it.fact.frames}
     parent, child = (given.get(key, "") for key in ("frame_id", "child_frame_id"))
     if parent and parent == child:

@@ -169,7 +169,9 @@ def _unknown_attributes(
             yield fault("not-read", element, key, where)
     if missing:
         names = " and no ".join(map(repr, missing))
-        yield fault("missing", element, None, f"<{element.tag}> has no {names}")
+        yield fault(
+            "missing", element, None, f"<{element.tag}> has no {names}", f"add {missing[0]}="
+        )
 
 
 def _child_faults(element: etree._Element, section: UrdfPart, schema: Schema) -> Iterator[Problem]:
@@ -192,7 +194,7 @@ def _child_faults(element: etree._Element, section: UrdfPart, schema: Schema) ->
         else:
             yield from _unknown_child(element, child, section, schema, meant)
     for tag in missing:
-        yield fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
+        yield fault("missing", element, None, f"<{element.tag}> has no <{tag}>", f"add <{tag}>")
     # Children that are read once and come again with other content.
     for tag, times in count.items():
         declared = section.children.get(tag)
@@ -276,7 +278,7 @@ def _value_faults(
 
 
 def _is_unread(element: etree._Element) -> bool:
-    """Return whether it is the axis of a joint whose axis is not read."""
+    """Return whether an element is the axis of a joint whose axis is not read."""
     joint = element.getparent()
     return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
 

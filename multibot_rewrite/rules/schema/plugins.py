@@ -75,7 +75,7 @@ def _parameter_faults(
             yield from _place_faults(child, above, own, section, definitions)
     elif not has_release(row.releases, release):
         message = f"{title(section)} of {release} does not read {name!r}"
-        hint = f"that of {', '.join(releases_with(row.releases))} does"
+        hint = f"delete it; that of {', '.join(releases_with(row.releases))} reads it"
         yield fault("later", child, None, message, hint)
     elif text and "$" not in text:
         where = f"{row.name} {shortened(text)!r}"
@@ -159,7 +159,7 @@ def _of_another(name: str, section: Values, definitions: Definitions) -> str:
 def _counterparts(
     library: str, of_ros_1: bool, definitions: Definitions
 ) -> tuple[tuple[str, bool], ...]:
-    """Return plugins of the same name or subject: in the other ROS, or the other Gazebo."""
+    """Return (name, is it for ROS 1) of plugins alike: in the other ROS, or the other Gazebo."""
     own = _topic_of_library(library)
     of_gz = library.startswith(GZ)
     start = GAZEBO_ROS if of_gz else GZ
@@ -184,7 +184,7 @@ def _missing_values(
     for name, row in section.rows.items():
         if row.required and name not in given and has_release(row.releases, release):
             message = f"{title(section)} needs {name!r}"
-            hint = f"without it, it is not loaded{_bracketed(row.place)}"
+            hint = f"add it: it is not loaded without{_bracketed(row.place)}"
             yield fault("missing", element, None, message, hint)
 
 

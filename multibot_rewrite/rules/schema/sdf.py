@@ -113,6 +113,7 @@ def _converter_faults(child: _Element, row: SdfRow, home: str) -> Iterator[Probl
 
 
 def _parents_of(tag: str) -> tuple[str, ...]:
+    """Return the elements of SDF into which the converter puts a tag of ``<gazebo>``."""
     if tag in OF_MODELS:
         return ("model", "link", "joint")
     if tag in OF_BOTH:
@@ -133,7 +134,7 @@ def _child_faults(
     row = _of_version(rows, version)
     if row.first > version:
         message = f"<{tag}> in <{home}> is of SDF {_version_text(row.first)}"
-        hint = f"Gazebo of this release reads up to SDF {_version_text(version)}"
+        hint = f"leave it out: Gazebo of this release reads up to SDF {_version_text(version)}"
         yield fault("later", child, None, message, hint)
         return
     yield from _value_faults(child, "", row, text_of(child), known, version)

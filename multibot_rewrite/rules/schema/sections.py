@@ -114,6 +114,7 @@ def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
 
 
 def _kind(words: Sequence[str]) -> Kind:
+    """Return the kind of a value from the words of a row, such as ``required`` or ``one:a|b``."""
     choices = next((it[4:].split("|") for it in words if it.startswith("one:")), [])
     types = [it for it in words if it in FINE]
     return Kind(
@@ -127,6 +128,7 @@ def _kind(words: Sequence[str]) -> Kind:
 
 
 def _version_behind(start: str, words: Sequence[str]) -> Version:
+    """Return the version behind ``start`` in the words of a row; the oldest without one."""
     given = (it.removeprefix(start) for it in words if it.startswith(start))
     word = next(given, str(OLDEST))
     found = read_version(word)
@@ -135,7 +137,7 @@ def _version_behind(start: str, words: Sequence[str]) -> Version:
 
 
 def is_own(name: object) -> bool:
-    """Return whether it is a tag or attribute of URDF: no comment, nothing in another's namespace."""
+    """Return whether a name is a tag or attribute of URDF: no comment, no other namespace."""
     return isinstance(name, str) and "{" not in name and ":" not in name
 
 
@@ -159,7 +161,7 @@ def section_of(element: etree._Element, known: Schema) -> UrdfPart | None:
 def typed_attributes(
     version: Version, name: str, keys: tuple[str, ...]
 ) -> tuple[tuple[int, Kind], ...] | None:
-    """Return which attributes have a type, and what they hold; None if one is a fault itself."""
+    """Return (index, kind) of the attributes that have a type; None if one is a fault itself."""
     section = schema(version).sections[name]
     known = section.attributes
     if any(f"@{key}" in section.later for key in keys):
@@ -268,7 +270,7 @@ def wrong_numbers(value: str, kind: str) -> tuple[str, str, str]:
 
 
 def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, str, str]:
-    """Return kind, end of the message and hint for a value of numbers alone; empty if it is right."""
+    """Return (kind, end of the message, hint) of a value of numbers alone; empty if it is right."""
     wanted = COUNTS[kind]
     if len(numbers) != wanted:
         count = f"{len(numbers)} numbers" if len(numbers) != 1 else "1 number"

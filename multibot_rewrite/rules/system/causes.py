@@ -57,7 +57,7 @@ def caused(hint: str, place: str) -> Cause:
 
 
 def plugin_of(plan: Index | None, node: str) -> tuple[str, str]:
-    """Return the plugin that starts a planned node, and its place; both empty without one."""
+    """Return (plugin that starts a planned node, its place); both empty without one."""
     place = str(plan.node[node].plugin) if plan and node in plan.node else ""
     if not (plan and place):
         return "", ""
@@ -137,7 +137,7 @@ def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
 
 
 def _way_in(plan: Index, node: str) -> tuple[str, str]:
-    """Return how a planned node gets its rules, and which one takes them for it."""
+    """Return (how a planned node gets its rules, the node that takes them for it)."""
     planned = plan.node.get(node)
     return (planned.way, planned.taker) if planned else ("", "")
 
@@ -222,7 +222,7 @@ def alike(
 
 
 def _with_other_word(parts: list[str], at: int, known: Spelled) -> Iterator[tuple[str, str]]:
-    """Yield known names that differ in the word at one place alone, with it; not in its number."""
+    """Yield (known name, its word there) of names that differ in one word alone, not in its number."""
     own, words = _DIGITS.sub("", parts[at]), known.beside.get(_other_parts(parts, at), {})
     found = (it for bare, others in words.items() if bare != own for it in others)
     return islice(found, COMPARED)
@@ -241,5 +241,5 @@ def _is_slip(one: str, other: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def letters(name: str) -> str:
-    """Return its letters, digits and slashes, in lower case."""
+    """Return the letters, digits and slashes of a name, in lower case."""
     return "".join(it for it in name.lower() if it.isalnum() or it == "/")

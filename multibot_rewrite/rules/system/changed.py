@@ -221,7 +221,7 @@ def _changed_frames(before: System, seen: Index) -> Iterator[_Change]:
 
 
 def _names_in_messages(system: System) -> Iterator[tuple[str, str]]:
-    """Yield the topics with the frames and joints that their messages name, and descriptions."""
+    """Yield (topic, frames and joints that its messages name); descriptions, too."""
     for it in system.heard:
         yield it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints)
     yield from ((it.topic, name) for it in system.descriptions for name in (*it.links, *it.joints))

@@ -204,12 +204,17 @@ _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry")
 def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
     """Report all topics of a sender that are wrong in one way as one; a bag's data are of then."""
     clock = CLOCK in seen.published
+    simulated = clock and any(_YEAR < abs(it.age) < inf for it in seen.system.heard)
     found: dict[tuple[tuple[str, ...], str], list[str]] = defaultdict(list)
     for topic, _, age, *_ in seen.system.heard:
         type_, senders = sent_on(seen, topic)
         played = any(last_word(it).startswith(words.PLAYER) for it in senders)
         measured = type_.startswith(_MEASURED)
-        if senders and measured and not played and (what := _time_fault(age, clock)):
+        # The age of what is latched is not measured.
+        offered = {it.qos.durability for it in seen.ends_at(TOPIC, topic).publishers if it.qos}
+        now = simulated and not age and words.is_of_one_sensor(type_) and offered == {"VOLATILE"}
+        what = _MACHINES if now else _time_fault(age, clock)
+        if senders and measured and not played and what:
             found[senders, what].append(topic)
     yield from _old_transforms(seen, clock)
     for (senders, what), topics in found.items():

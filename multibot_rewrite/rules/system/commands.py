@@ -72,7 +72,9 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 @system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Report commands without a reader, unless the reader of a like name is reported."""
-    obeyed, plainly = defaultdict(list), defaultdict(list)
+    obeyed: dict[str, list[str]] = defaultdict(list)
+    waiting: dict[str, list[str]] = defaultdict(list)
+    plainly: dict[tuple[str, str], list[str]] = defaultdict(list)
     unread: dict[str, Ends] = {}
     for name, it in seen.orders.items():
         # What only may be sent is not missed.
@@ -80,12 +82,14 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
         if sent and not _is_obeyed(it):
             unread[name] = it._replace(publishers=sent)
     for (kind, name), ends in seen.by_name.items() if unread else ():
-        if kind == TOPIC and ends.publishers and _is_obeyed(ends):
-            obeyed[ends.type].append(name)
-            plainly[ends.type, seen.plain(name)].append(name)
+        if kind == TOPIC and _is_obeyed(ends):
+            (obeyed if ends.publishers else waiting)[ends.type].append(name)
+            plainly[ends.type, seen.plain(name)] += [name] * bool(ends.publishers)
     spelled: dict[str, Spelled] = {}
     for name, ends in unread.items():
-        same = obeyed[ends.type]
+        # What waits for such a command is a finding of its own, unless it takes another type.
+        other = _with_other_stamp(ends.type)
+        same = obeyed[ends.type] or obeyed[other] + waiting[other]
         spelled[ends.type] = spelled.get(ends.type) or Spelled(same)
         robots = _meant_commands(seen, ends, plainly[ends.type, name])
         near = next(iter(robots), "") or _like_command(seen, ends, spelled[ends.type])
@@ -147,7 +151,7 @@ def _topic_for_mux(seen: Index, ends: Ends) -> str:
 
 @once
 def _velocity_ends(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends]]]:
-    """Return who sends velocities, and so is no drive; who also reads them; each robot's velocities."""
+    """Return three: nodes that send velocities, those that also read them, velocities by robot."""
     moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
     senders = {it.node for ends in moving for it in ends.publishers}
     asked = (it for it in moving if it.publishers or not is_from_outside(it.name))
@@ -165,8 +169,14 @@ def _obeyed_commands(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
 
 
 def _plain_types(ends: Ends) -> set[str]:
-    """Return its types; stamped or not is a switch of the sender."""
+    """Return the types of a topic, as if none were stamped: that is a switch of the sender."""
     return {it.removesuffix(STAMPED) for it in ends.type.split(" | ")}
+
+
+def _with_other_stamp(type_: str) -> str:
+    """Return the type with a stamp of one without, and the other way round."""
+    plain = type_.removesuffix(STAMPED)
+    return plain if plain != type_ else f"{type_}{STAMPED}"
 
 
 def _command_by_hand(seen: Index, ends: Ends, same: Sequence[str]) -> str:
@@ -194,10 +204,10 @@ def _unread_command(seen: Index, ends: Ends, meant: str, robots: int) -> Finding
     message = f"publishes {ends.name}, which no node reads; {reader} reads {meant}"
     several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
     wanted = seen.by_name[TOPIC, meant].type
-    if set(wanted.split(" | ")).isdisjoint(ends.type.split(" | ")):
-        several += f"; it reads {wanted}, not {ends.type}"
     remaps = tuple(Remap(it, ends.name, meant) for it in nodes_of(ends.publishers))
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
+    if set(wanted.split(" | ")).isdisjoint(ends.type.split(" | ")):
+        cause = f"send {meant} as {wanted}, not as {ends.type}{several}"
     if others := _sends_already(seen, meant):
         remaps, cause = (), f"{reader} obeys {others} there: {_CHOOSE}"
     # RViz offers these from the start.

@@ -83,7 +83,7 @@ def unexplained(found: Sequence[Finding]) -> list[Finding]:
 
 
 def _odd_values(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Value, _Value]]:
-    """Yield robot, its value and that of the others, where one differs from all the others."""
+    """Yield (robot, its value, the others' value) where one differs from all the others."""
     for own in values.values():
         there = {it: own[it] for it in likes if it in own}
         counts = Counter(it.plain for it in there.values())
@@ -114,6 +114,7 @@ def _differences(odd: Iterator[tuple[str, _Value, _Value]], of_two: bool) -> Ite
 
 @once
 def _parameter_values(seen: Index) -> _Values:
+    """Return by plain node and parameter the value of each robot."""
     found: dict[tuple[str, ...], dict[str, _Value]] = defaultdict(dict)
     for it in seen.system.parameters:
         robot = seen.robot(it.node)
@@ -150,7 +151,7 @@ def _qos_values(seen: Index) -> _Values:
 
 
 def _edges_of(seen: Index) -> Iterator[tuple[str, Edge]]:
-    """Yield the fixed transforms of robots that have one sender each, with the robot."""
+    """Yield (robot, transform) for fixed transforms that have one sender each."""
     for tree in seen.trees:
         for it in tree.edges:
             robot = seen.frame_robot(it.child) or seen.robot(it.topic)

@@ -12,7 +12,7 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import last_place, system_rule
-from multibot_rewrite.rules.system.likes import nodes_of_each
+from multibot_rewrite.rules.system.likes import done_elsewhere, nodes_of_each
 from multibot_rewrite.rules.system.sharing import is_planned_with
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system import words
@@ -243,7 +243,7 @@ def _frame_of_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str
 
 
 def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:
-    """Return frame, robot and senders -> the messages of nodes other than viewers."""
+    """Return by frame, robot and senders the messages of nodes other than viewers."""
     found: dict[tuple[str, str, tuple[str, ...]], list[_Message]] = defaultdict(list)
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
@@ -313,7 +313,20 @@ def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, s
         links, sent = shorten(it.links, SEVERAL), shorten(sorted({*frames.values()}), SEVERAL)
         message = f"no link of {it.topic} ({links}) is a frame that is sent ({sent})"
         return message, "who sends tf has another description: load one in both", ERROR
-    return _joint_fault(seen, it, robot) if it.joints else None
+    return (_joint_fault(seen, it, robot) or _no_joints(seen, it, robot)) if it.joints else None
+
+
+def _no_joints(seen: Index, it: Description, robot: str) -> tuple[str, str, str] | None:
+    """Return what is wrong where no node of the robot sends joint states, and links are in no tf."""
+    own = [one for one in seen.topics if one.type == words.JOINTS and seen.robot(one.name) == robot]
+    waiting = [one for one in own if {*sent_on(seen, it.topic)[1]} & {*nodes_of(one.subscribers)}]
+    if seen.expected or any(one.publishers for one in own) or not waiting:
+        return None
+    name = waiting[0].name
+    lost = () if done_elsewhere(seen, waiting[0]) else _lost_links(seen, it, robot)
+    message = f"no node sends {name}, so no transform leads to {shorten(lost, SEVERAL)}"
+    hint = "start joint_state_broadcaster, or the bridge or driver that sends it"
+    return (message, hint, ERROR if is_planned_with(seen, name) else WARNING) if lost else None
 
 
 def _sent_frames(seen: Index, robot: str) -> dict[str, str]:

@@ -256,7 +256,7 @@ def listed_in_vain(seen: Index, end: End) -> str:
 
 
 def is_needed(end: End) -> bool:
-    """Return whether something of the robot must give it; a chooser seldom has all inputs."""
+    """Return whether something of the robot must give an end; a chooser seldom has all inputs."""
     by_code = end.role in (SUBSCRIBES, CALLS) and end.code_name and end.sure == RUNS
     outside = is_from_outside(end.name) or is_from_outside(end.code_name)
     idle = is_viewer(end.node) or (end.role == SUBSCRIBES and chooses(end.node))
@@ -265,14 +265,20 @@ def is_needed(end: End) -> bool:
 
 def meant(seen: Index, end: End) -> Ends | None:
     """Return what was meant by an end: its type, and its last word or the likest name; or None."""
+    if (key := (meant, end)) not in seen.memo:
+        seen.memo[key] = _likest(seen, end)
+    found: Ends | None = seen.memo[key]
+    return found
+
+
+def _likest(seen: Index, end: End) -> Ends | None:
     mux = end.role == SUBSCRIBES and chooses(end.node)
     if not (is_needed(end) or (mux and end.code_name)) or not end.type:
         return None
     given = _sent_or_served(seen)
     own = {"", seen.robot(end.node)}
     same = {at: it for one in own for at, it in given.get((end.kind, end.type, one), ())}
-    ranked = (same[at] for at in sorted(same) if not _is_costmap(same[at]))
-    likely = (it for it in ranked if _may_be(seen, it, end))
+    likely = (same[at] for at in sorted(same) if _may_be(seen, same[at], end))
     alike = {it.name: it for it in likely if not _waits_itself(seen, it, end)}
     if end.type.startswith(_PLAIN_TYPES):
         # What their names in the code have in common counts, not the robot's namespace.
@@ -294,7 +300,8 @@ def _sent_or_served(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int
     """Return what is sent or served, with its position, by kind, type and sending robot."""
     found: dict[tuple[str, str, str], list[tuple[int, Ends]]] = defaultdict(list)
     for at, it in enumerate(seen.by_name.values()):
-        for robot in {seen.robot(one.node) for one in _givers(it)}:
+        givers = () if _is_costmap(it) else _givers(it)
+        for robot in {seen.robot(one.node) for one in givers}:
             found[it.kind, it.type, robot].append((at, it))
     return found
 
@@ -312,5 +319,5 @@ def _may_be(seen: Index, ends: Ends, end: End) -> bool:
 
 
 def _givers(ends: Ends) -> list[End]:
-    """Return who surely sends or serves it."""
+    """Return the ends that surely send or serve a name."""
     return [it for it in (*ends.publishers, *ends.servers) if it.sure == RUNS]

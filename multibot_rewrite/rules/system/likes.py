@@ -11,6 +11,7 @@ from multibot_rewrite.base.conventions import EVERYBODYS, SENT_FRAMES, chooses
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
@@ -30,6 +31,8 @@ from multibot_rewrite.system.words import is_viewer, last_word
 # Fewer nodes in common say nothing.
 _ENOUGH = 3
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
+# It loads controllers into its process.
+_LOADER = "/controller_manager"
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
 # Node, kind, role and name, without the robot's.
@@ -250,7 +253,8 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
     rates = dict(sorted((it.topic, it.rate) for it in seen.system.heard))
     robots, flows = ({seen.robot(it) for it in rates if rates[it] >= least} for least in (0, 1e-9))
     kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in rates}
-    if seen.known.messages or any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
+    missed = any(it.code == _NOT_ALL for it in seen.system.environment.caveats)
+    if missed or seen.known.messages or is_recorded(seen.system):
         robots = set()
     # Those without a robot only where none has a name.
     sensors = dicts_by_key(
@@ -288,7 +292,8 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
         if node := done_elsewhere(seen, ends):
-            lost[seen.robot(ends.name), node].append(ends)
+            robot = seen.robot(ends.name)
+            lost[robot, _loader(seen, node, robot)].append(ends)
     yield from _never_sent(seen)
     for (robot, node), missed in lost.items():
         names, plain = tuple(it.name for it in missed), seen.plain(node)
@@ -308,6 +313,14 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
             message, hint, level=ERROR if seen.is_live else WARNING,
             robot=robot, node=there, names=names,
         )  # fmt: skip
+
+
+def _loader(seen: Index, node: str, robot: str) -> str:
+    """Return the controller_manager in a node's process where the robot has none, else the node."""
+    each = nodes_of_each(seen)
+    loader = each[seen.robot(node)].get(_LOADER, node)
+    together = seen.node[node].process == seen.node[loader].process != ""
+    return loader if together and _LOADER not in each[robot] else node
 
 
 def _never_sent(seen: Index) -> Iterator[Finding]:

@@ -61,7 +61,7 @@ def _maps_below_the_map(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
         edges = (one for tree in trees_of(seen, robot) for one in tree.edges)
         root = root_of(it.frame, {one.child: one.parent for one in edges})
-        if seen.plain_frame(root) in WORLD_FRAMES and _may_be_of(seen, it.frame, robot):
+        if seen.plain_frame(root) in WORLD_FRAMES and _may_be_frame_of(seen, it.frame, robot):
             yield map_not_joined.finding(
                 f"frame_id of {it.topic} is {it.frame}, which moves in {root}; sent by {senders[0]}",
                 f"set the frame of {senders[0]} to that of the map",
@@ -81,7 +81,7 @@ def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
     frames = [
-        it for it in {**above, **dict.fromkeys(above.values())} if _may_be_of(seen, it, robot)
+        it for it in {**above, **dict.fromkeys(above.values())} if _may_be_frame_of(seen, it, robot)
     ]
     # What hangs on the map and has nothing below it.
     ends = above.keys() - {*above.values()}
@@ -93,7 +93,7 @@ def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     return _Body(next(iter(roots)), tuple(loose)) if is_one else None
 
 
-def _may_be_of(seen: Index, frame: str, robot: str) -> bool:
+def _may_be_frame_of(seen: Index, frame: str, robot: str) -> bool:
     return seen.frame_robot(frame) in ("", robot)
 
 
@@ -174,6 +174,7 @@ def transform_refused(seen: Index) -> Iterator[Finding]:
 
 
 def _why_dropped(it: Edge) -> str:
+    """Return why tf2 refuses a transform; empty if it does not."""
     if not (it.child and it.parent):
         return "a frame has no name"
     if it.child == it.parent:
@@ -182,6 +183,7 @@ def _why_dropped(it: Edge) -> str:
 
 
 def _fault_of_pose(numbers: tuple[float, ...]) -> str:
+    """Return what is wrong with the numbers of a transform; empty if nothing is."""
     if not all(map(isfinite, numbers)):
         return "a number in it is not finite (NaN)"
     length = sum(number * number for number in numbers[3:])
@@ -211,7 +213,7 @@ def part_far_away(seen: Index) -> Iterator[Finding]:
 
 
 def _is_of_a_body(seen: Index, frame: str, above: Mapping[str, str]) -> bool:
-    """Return whether it is the base of a robot, or below it."""
+    """Return whether a frame is the base of a robot, or below it."""
     way = [frame]
     while way[-1] in above and above[way[-1]] not in way:
         way.append(above[way[-1]])

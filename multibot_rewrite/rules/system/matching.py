@@ -16,7 +16,14 @@ from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_se
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, ZENOH, End, Qos
-from multibot_rewrite.system.words import DESCRIPTION, JOINTS, MAP, is_viewer, last_word
+from multibot_rewrite.system.words import (
+    DESCRIPTION,
+    JOINTS,
+    MAP,
+    is_hidden,
+    is_viewer,
+    last_word,
+)
 
 # The words of each policy, the weakest first; any other word does not say what is in force.
 RELIABILITY = ("BEST_EFFORT", "RELIABLE")
@@ -86,7 +93,7 @@ def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
 
 
 def _stale(seen: Index, ends: Iterable[End]) -> str:
-    """Say that the type of one of the ends is known of an earlier version of its node only."""
+    """Return a note that an end's type is known of an earlier version of its node only; or ""."""
     from multibot_rewrite.knowledge.node_sets import older_node  # a fault alone needs it
 
     known = ((seen.node[it.node].known, it.type) for it in ends if it.node in seen.node)
@@ -159,7 +166,7 @@ def _types(end: End) -> Iterator[tuple[str, str]]:
 def _difference(
     name: str, giver: str, asked: Mapping[str, str], given: Mapping[str, str]
 ) -> tuple[str, str]:
-    """Return how two sides' types (each with one hash) differ, and what to do."""
+    """Return (how two sides' types, each with one hash, differ, what to do)."""
     wanted, there = (", ".join(sorted(it)) for it in (asked, given))
     if asked.keys() & given.keys():
         return (
@@ -190,7 +197,8 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
                 if it.qos and end.qos and (conflicts := qos_conflicts(it.qos, end.qos)):
                     refused[conflicts].append(it)
             hears = sum(map(len, refused.values())) < len(ends.publishers)
-            if not (hears and is_viewer(end.node)):
+            # One that lacks some of the transforms shows nothing where they are needed.
+            if not (hears and is_viewer(end.node)) or end.type == TF:
                 for conflicts, publishers in refused.items():
                     one = _Refused(end, nodes_of(publishers), conflicts, hears)
                     found[one[1:]].append(one)
@@ -218,16 +226,17 @@ def _qos_finding(seen: Index, first: _Refused, *more: _Refused) -> Finding:
     offered = " and ".join(offer for offer, _ in conflicts)
     asked = " and ".join(request for _, request in conflicts)
     senders, readers = shorten(nodes), nodes_of(it.end for it in (first, *more))
+    at_sender = len(readers) > 1 or last_word(end.name) == "tf_static"
     message = f"subscribes to {end.name} with {asked}, but {senders} offers {offered}"
-    if len(readers) > 1:
-        message = f"offers {end.name} with {offered}, but {shorten(readers)} ask for {asked}"
     never = f"no message of {senders} ever arrives" if hears else "no message ever arrives"
     cause = f"{never}: let it ask for {offered}, or the publisher offer {asked}"
-    if len(readers) > 1 or last_word(end.name) == "tf_static":
+    if at_sender:
+        ask = f"{shorten(readers)} ask{'s' * (len(readers) == 1)} for {asked}"
+        message = f"offers {end.name} with {offered}, but {ask}"
         cause = f"{never}: let {senders} offer {asked}"
     level = WARNING if all(map(is_viewer, readers)) or (hears and end.type != TF) else ERROR
     robot = seen.robot(end.node) or seen.robot(end.name)
-    node = nodes[0] if len(readers) > 1 else end.node
+    node = nodes[0] if at_sender else end.node
     return qos_never_meets.finding(
         message, cause, level=level, robot=robot, node=node, names=(end.name,)
     )
@@ -289,25 +298,29 @@ def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
     read = [it for node in latched for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
     again = {it.node for it in read if it.type != JOINTS and words.is_of_a_body(it.type)}
     once = [it for it in latched if it not in again]
-    readers = nodes_of(at_work(_with_durability(ends.subscribers, DURABILITY[0])))
+    volatile = _with_durability(ends.subscribers, DURABILITY[0])
+    seeing = [it for it in volatile if is_viewer(it.node) and not is_hidden(it.node)]
+    readers = nodes_of(at_work(volatile) or seeing)
     if once and readers and len(once) == len(ends.publishers):
         yield not_latched.finding(
             f"{shorten(readers)} reads {ends.name} with durability VOLATILE, and {once[0]} sends it"
-            " once: started later, it never gets it",
-            level=WARNING, robot=seen.robot(ends.name) or seen.robot(readers[0]),
+            " once: started later, it never gets it", level=NOTE if volatile == seeing else WARNING,
+            robot=seen.robot(ends.name) or seen.robot(readers[0]),
             node=readers[0], names=(ends.name,), **_ask_latched(readers, ends.name)._asdict(),
         )  # fmt: skip
 
 
 def _ask_latched(nodes: Sequence[str], name: str) -> Cause:
     """Return the parameter by which a costmap asks for what is sent once, else that of the QoS."""
+    if is_viewer(nodes[0]):
+        return Cause("set Durability Policy to Transient Local in its display")
     if all(last_word(it).endswith("costmap") for it in nodes):
         return to_set("static_layer.map_subscribe_transient_local", "true", *nodes)
     return _set_qos(nodes[0], name, SUBSCRIPTION, ("durability", DURABILITY[1]))
 
 
 def _is_latched(ends: Ends) -> bool:
-    """Return whether it is latched, by type or by name: a map, a description, static transforms."""
+    """Return whether a topic is latched, by type or by name: a map, a description, static tf."""
     words_ = ends.name.split("/")[-2:]
     return (ends.type == MAP and "map" in words_) or bool({*words_} & {DESCRIPTION, "tf_static"})
 

@@ -148,7 +148,7 @@ def _published_instead(
 
 
 def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
-    """Return whether these are names of two robots, such as ``left_arm`` and ``arm_left``."""
+    """Return whether two names are those of two robots, such as ``left_arm`` and ``arm_left``."""
     robot, another = seen.robot(name), seen.robot(other)
     return bool(robot and another) and robot != another
 
@@ -372,7 +372,7 @@ def _calls_in_vain(seen: Index, end: End) -> bool:
 
 @once
 def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], list[str]]]:
-    """Return by kind and plain name the robots that call in vain, and those that are served."""
+    """Return by kind and plain name (robots that call in vain, robots that are served)."""
     found: dict[tuple[str, str], tuple[list[str], list[str]]] = defaultdict(lambda: ([], []))
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.clients or ends.servers else ""
@@ -404,6 +404,7 @@ def _is_manager(node: str) -> bool:
 
 
 def _served_instead(seen: Index, end: End, served: _Served) -> str:
+    """Return the served name that a client probably means; empty for none."""
     robot, owner = seen.robot(end.node), seen.robot(end.name)
     same = served.plain.get(seen.plain(end.name), ())
     # Another robot's is no answer to a robot that lacks it.

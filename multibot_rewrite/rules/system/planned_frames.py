@@ -157,6 +157,7 @@ def misnamed(plan: Index, seen: Index) -> Set[str]:
 
 
 def _strays_of_robots(plan: Index, seen: Index) -> Iterator[tuple[Tree, Robot, Sequence[Stray]]]:
+    """Yield (tree, robot, unplanned frames of the robot in it)."""
     for tree, strays in _strays(plan, seen):
         for robot, found in strays.items():
             yield tree, plan.declared[robot], found
@@ -164,6 +165,7 @@ def _strays_of_robots(plan: Index, seen: Index) -> Iterator[tuple[Tree, Robot, S
 
 @once
 def _strays(plan: Index, seen: Index) -> Sequence[tuple[Tree, Strays]]:
+    """Return (tree, its unplanned frames by robot) for each tree."""
     there = frames_by_topic(seen)
     return [(tree, _strays_of(plan, tree, there[tree.topic])) for tree in seen.trees]
 

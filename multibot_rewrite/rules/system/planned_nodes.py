@@ -51,7 +51,7 @@ def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _groups_of_one(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
-    """Yield the groups of nodes of which one runs, each with its robot."""
+    """Yield (nodes of which one runs, their robot)."""
     for group in alternatives(plan.system):
         yield group, next((plan.robot_of[it] for it in group if it in plan.robot_of), "")
 
@@ -86,6 +86,7 @@ def _is_missing(plan: Index, seen: Index, robot: Robot) -> bool:
 
 
 def _not_started(plan: Index, node: str) -> Cause:
+    """Return the likely cause why a planned node does not run."""
     plugin, place = plugin_of(plan, node)
     if plugin:
         started = f"{plugin} of the description should start it, see {place}"
@@ -243,7 +244,7 @@ def _too_many_recorded(plan: Index, seen: Index) -> Iterator[Finding]:
         there, most = len(_publishers(seen, name)), 1 if name in single else len(own)
         if own and there > most and seen.robot(name) and not any("*" in it for it in own):
             message = f"{name} has {there} publishers, planned are {most}"
-            hint = f"planned: {shorten(sorted(own), SEVERAL)}"
+            hint = f"stop the others than {shorten(sorted(own), SEVERAL)}"
             yield sender_not_planned.finding(message, hint, robot=seen.robot(name), names=(name,))
 
 

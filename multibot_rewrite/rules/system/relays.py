@@ -124,7 +124,7 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
 
 
 def _passed_topics(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
-    """Return the command and sensor topics that each node reads and sends, for nodes that do both."""
+    """Return by node (topics read, topics sent) of commands and sensors, if it does both."""
     found: dict[str, tuple[list[Ends], list[Ends]]] = defaultdict(lambda: ([], []))
     for ends in seen.topics:
         body = words.is_of_a_body(ends.type) and ends.type != words.JOINTS

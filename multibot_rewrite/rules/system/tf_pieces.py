@@ -121,7 +121,7 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
 
 
 def _near_frames(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
-    """Return a function: of the robot's frames and those of none the one nearly called so, or ""."""
+    """Return a function for the frame, of the robot's and of nobody's, with nearly a name; or ""."""
     own = sets_by_key((seen.frame_robot(it), it) for it in frames)
     left: dict[str, int] = defaultdict(lambda: _COMPARED)
 
@@ -147,7 +147,7 @@ def _near_frame(name: str, others: Collection[str]) -> str:
 
 
 def _differing_words(name: str, other: str) -> tuple[str, list[str]]:
-    """Return two names without the words that both begin and end with: a prefix makes all alike."""
+    """Return (a name, [the other]) without the words that both begin with, and end with."""
     one, two = (re.split(r"[/_]", it) for it in (name, other))
     while one and two and one[0] == two[0]:
         one, two = one[1:], two[1:]
@@ -242,7 +242,7 @@ def is_of_description(seen: Index, edge: Edge) -> bool:
 
 
 def _joined_groups(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:
-    """Return a function: for a frame one that represents all that are joined with it."""
+    """Return a function for one frame that stands for all that a frame is joined with."""
     above: dict[str, str] = {}
 
     def root(frame: str) -> str:

@@ -108,7 +108,7 @@ def _frames_of_another(
 
 
 def _is_of_its_tree(seen: Index, _: Tree, edge: Edge) -> bool:
-    """Return whether it is between frames of one robot, or what a node sends by the plan."""
+    """Return whether a transform is between frames of one robot, or its node sends it by the plan."""
     one = seen.frame_robot(edge.child) == seen.frame_robot(edge.parent)
     return one or (edge.parent, edge.child) in seen.senders
 
@@ -197,7 +197,7 @@ def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whol
 
 
 def _is_own_topic(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], topic: str) -> bool:
-    """Return whether it is in the robot's namespace, and only its own nodes or bridges send."""
+    """Return whether a topic is in the robot's namespace, and only its own nodes or bridges send."""
     at_home = topics.get(_tf_topic_of(seen, robot, topics), ())
     others = (it for it in topics[topic] if it not in at_home and _BRIDGE not in last_word(it))
     bridge = f"ros_gz{_BRIDGE}"

@@ -96,6 +96,10 @@ def no_odometry(seen: Index, robot: str, odom: str, root: str) -> str:
     """Return the cause of a tree in pieces: nothing is sent below an odometry frame, or elsewhere."""
     if other := sent_elsewhere(seen, robot, odom, root):
         return f"{other.publishers[0]} sends {odom} -> {root} on {other.topic}: bring it to tf, too"
+    plain = seen.plain_frame(odom), seen.plain_frame(root)
+    for it in seen.sent:
+        if (seen.plain_frame(it.parent), seen.plain_frame(it.child)) == plain:
+            return f"{it.node} sends {it.parent} -> {it.child}: use one name for each frame"
     return f"no node sends {odom} -> {root}: is odometry started, are its frames the same?"
 
 
@@ -107,7 +111,7 @@ def sent_elsewhere(seen: Index, robot: str, odom: str, root: str) -> Edge | None
 
 
 def loose_odometry(seen: Index) -> Iterator[tuple[str, str]]:
-    """Yield the odometry frames with nothing below them, each with its root."""
+    """Yield (odometry frame with nothing below it, its root)."""
     for tree in seen.trees:
         above, parents = above_each(tree), {it.parent for it in tree.edges}
         loose = (it for it in above if it not in parents and seen.plain_frame(it) == "odom")
@@ -242,6 +246,7 @@ def _misspelled(
 
 
 def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
+    """Return the cause why a planned transform is not sent."""
     place = where_set(plan, planned.node)
     see = f" (see {place})" if place else ""
     if planned.node not in seen.nodes:
@@ -265,7 +270,7 @@ def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
 
 
 def foreign_transforms(plan: Index, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
-    """Yield transforms of other robots that a node of this one may send, each with its robot."""
+    """Yield (robot, transform) of other robots that a node of this one may send."""
     found = _transforms_of_robots(plan, seen).get(tree_topic(robot.tf_topic), ())
     return (it for it in found if it[0] != robot.name)
 

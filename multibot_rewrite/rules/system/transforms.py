@@ -144,7 +144,7 @@ def _bare_frames(seen: Index, tree: Tree) -> list[str]:
 
 
 def _is_of_several(seen: Index, edge: Edge) -> bool:
-    """Return whether nodes of several robots send it below frames of their own."""
+    """Return whether nodes of several robots send a transform below frames of their own."""
     own = edge.parent not in WORLD_FRAMES and not edge.transform
     return own and edge.several and len(robots_of(seen, edge.publishers)) > 1
 

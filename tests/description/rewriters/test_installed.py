@@ -164,7 +164,7 @@ def _missing_package(site: Path) -> None:
     [
         pytest.param(_bad_grammar, "/acme.vocab:2: unknown kind 'lnik', use one of", id="grammar"),
         pytest.param(_no_file, "entry point acme = acme_robots: no *.vocab file in", id="no-file"),
-        pytest.param(_clash, "/acme.vocab:3: odometry_frame is there already, in cl", id="clash"),
+        pytest.param(_clash, "/acme.vocab:3: odometry_frame is in cl", id="clash"),
         pytest.param(_missing_package, "there is no package 'acme_robots'", id="no-package"),
     ],
 )
@@ -272,8 +272,8 @@ WRONG_POINTS = pytest.mark.parametrize(
         pytest.param("aa.nowhere", "there is no package 'aa.nowhere'", id="missing-below"),
         pytest.param("nowhere.aa", "there is no package 'nowhere.aa'", id="missing-above"),
         pytest.param("this", "there is no package 'this'", id="module"),
-        pytest.param("aa:it", "'aa:it' is not the name of a package", id="attribute"),
-        pytest.param("../aa", "'../aa' is not the name of a package", id="path"),
+        pytest.param("aa:it", "'aa:it' is no package's name", id="attribute"),
+        pytest.param("../aa", "'../aa' is no package's name", id="path"),
         pytest.param("importlib", "no *.vocab file in ", id="package-of-others"),
         pytest.param("aa\nodd", "entry_points.txt cannot be read", id="no-entry-points"),
     ],
@@ -303,20 +303,23 @@ def test_a_wrong_entry_point_is_refused(make: Make, value: str, words: str) -> N
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        pytest.param("hello\n", 1, "text before the first [section]", id="text-first"),
+        pytest.param("hello\n", 1, "move this below the first [section]", id="text-first"),
         pytest.param("[gadget a]\n", 1, "TYPE one of", id="type"),
         pytest.param("[plugin a]\n@x[ uses link\n", 2, "bad path", id="path"),
         pytest.param("[plugin a]\nwith: nope\n", 1, "there is no [block nope]", id="block"),
         pytest.param("[element a]\nat: robbot\n", 1, "there is no [element robbot]", id="at"),
         pytest.param("[element x.link]\nat: robot\n", 1, "has a section or sites", id="tag"),
-        pytest.param("[element link]\nat: robot\n@name keep it\n", 3, "is there al", id="element"),
+        pytest.param("[element link]\nat: robot\n@name keep it\n", 3, "already; re", id="element"),
         pytest.param(
-            "[plugin mine gazebo_ros_diff_drive]\nleft_joint keep it\n", 2, "is there", id="alias"
+            "[plugin mine gazebo_ros_diff_drive]\nleft_joint keep it\n",
+            2,
+            "already; remove",
+            id="alias",
         ),
         pytest.param(
             "[plugin gazebo_ros_diff_drive]\nros/namespace keep it\n",
             2,
-            "is there",
+            "already; remove",
             id="of-a-block",
         ),
         pytest.param(
@@ -346,7 +349,7 @@ def test_two_packages_that_say_different_things_are_refused(make: Make) -> None:
     one = make("aa", SECTION.format(name="both")) / "aa" / "it.vocab"
     two = make("bb", SECTION.format(name="both").replace("link", "joint")) / "bb" / "it.vocab"
     message = complaint()
-    assert message.startswith(f"bb 1.0: {two}:3: my_frame is there already, in aa 1.0: {one}")
+    assert message.startswith(f"bb 1.0: {two}:3: my_frame is in aa 1.0: {one}")
     assert message.endswith("pip uninstall bb")
 
 
@@ -357,7 +360,7 @@ def test_a_mistake_of_the_user_is_not_blamed_on_a_package(make: Make, tmp_path: 
     mine.write_text(SECTION.format(name="aa"))
     with pytest.raises(DefinitionsError) as caught:
         rewrite(ROBOT.format(name="aa"), "r1", definitions=[str(mine)])
-    assert str(caught.value).startswith(f"{mine}:3: my_frame is there already, in aa 1.0: ")
+    assert str(caught.value).startswith(f"{mine}:3: my_frame is in aa 1.0: ")
     assert "uninstall" not in str(caught.value)
 
 

@@ -108,7 +108,7 @@ def test_a_good_path_is_taken(tmp_path: Path, good: str) -> None:
 
 def test_a_second_site_at_one_path_is_refused(tmp_path: Path) -> None:
     path = write(tmp_path, HEAD + "@x uses link\n\n@x uses joint\n")
-    assert complaint(path) == f"{path}:5: @x is there already, at line 3"
+    assert complaint(path) == f"{path}:5: @x is in line 3 already; remove one"
 
 
 @pytest.mark.more

@@ -54,9 +54,9 @@ def test_all_releases_together_are_one_page(path: str) -> None:
         ("releases: jazzy kilted", "2: releases: 'jazzy kilted' names no releases"),
         (
             "x uses link releases=humble\nx uses joint releases=<=jazzy",
-            "3: x is there already, at l",
+            "3: x is in line 2 already; remo",
         ),
-        ("x uses link\nx uses joint releases=jazzy", "3: x is there already, at line 2"),
+        ("x uses link\nx uses joint releases=jazzy", "3: x is in line 2 already"),
     ],
 )
 def test_what_is_wrong_in_any_release_is_refused_in_all(

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import struct
+import tracemalloc
 
 import pytest
 from hypothesis import given, strategies as st
 from zenoh_robots import tf_message
 
 from multibot_rewrite.producers.ros.assemble import numbers_of
-from multibot_rewrite.producers.zenoh.cdr import read_tf, read_transform
+from multibot_rewrite.producers.zenoh.cdr import read_header_frame, read_tf, read_transform
 
 # One transform, odom -> base: count, stamp, "odom" with its zero, "base" with its zero, then
 # seven doubles at a multiple of 8 (36 bytes are before them, so 4 are empty).
@@ -61,6 +62,15 @@ def test_no_transform_is_a_message() -> None:
 @pytest.mark.parametrize("end", [*range(4), 7, 8, 20, 30, 60, len(ONE) - 1])
 def test_a_message_that_is_cut_short_is_none(end: int) -> None:
     assert read_tf(ONE[:end]) is None
+
+
+def test_an_image_is_not_copied_for_its_header() -> None:
+    image = ONE[:4] + ONE[8:16] + b"\x04\x00\x00\x00cam\x00" + b"\x80" * 1_000_000
+    tracemalloc.start()
+    assert read_header_frame(image) == "cam"
+    _, most = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert most < 100_000
 
 
 def test_another_encapsulation_is_none() -> None:

@@ -60,6 +60,7 @@ def as_junit(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _totals(findings: Sequence[Finding], report: Report) -> dict[str, str]:
+    """Return the counts for the attributes of a test suite, as texts by name."""
     clean = set(report.files) - {file_of(it, report) for it in findings}
     failures = sum(it.level in (ERROR, WARNING) for it in findings)
     skipped = sum(it.level == INCONCLUSIVE for it in findings)

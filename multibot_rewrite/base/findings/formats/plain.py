@@ -248,7 +248,7 @@ def as_markdown(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _markdown_parts(findings: Sequence[Finding], report: Report) -> Iterator[tuple[bool, str]]:
-    """Yield the parts of the text, each with whether it is the row of a finding."""
+    """Yield (is it the row of a finding, text) for each part of the text."""
     for file, found in by_file(findings, report).items():
         if not found:
             continue

@@ -123,7 +123,7 @@ def read_header(place: str, row: str) -> tuple[str, ...]:
             f"{place}: section [{row.strip()} must be [TYPE NAME...], TYPE one of {', '.join(_HEADERS)}"
         )
     if len(set(words)) < len(words):
-        raise DefinitionsError(f"{place}: section [{head}] has a name twice")
+        raise DefinitionsError(f"{place}: section [{head}] has a name twice; remove one")
     return tuple(words)
 
 
@@ -150,7 +150,7 @@ def read_section(
         for other in before:
             if share_release(site.releases, other.releases):
                 raise DefinitionsError(
-                    f"{file}:{number}: {site.path} is there already, at line {other.line}"
+                    f"{file}:{number}: {site.path} is in line {other.line} already; remove one"
                 )
         before.append(site)
         sites[f"{site.path} {site.releases}".strip()] = site
@@ -295,7 +295,7 @@ def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str,
 
 
 def is_step(text: str) -> bool:
-    """Return whether this is one step of a path, as a definition file may have it."""
+    """Return whether a text is one step of a path, as a definition file may have it."""
     return _ONE_STEP.fullmatch(text) is not None
 
 

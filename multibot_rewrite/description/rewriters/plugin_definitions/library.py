@@ -48,7 +48,7 @@ class Definitions:
             line = 0
             for line, row in enumerate(preamble.split("\n")):
                 if row.strip() and not row.startswith("#"):
-                    raise DefinitionsError(f"{file}:{line}: text before the first [section]")
+                    raise DefinitionsError(f"{file}:{line}: move this below the first [section]")
             for chunk in chunks:
                 line += 1
                 type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
@@ -140,13 +140,14 @@ class Definitions:
         return values_of((first, *names), of_ros_1, is_open, self._value_rows(raws))
 
     def _value_rows(self, raws: Iterable[Raw]) -> Iterator[Value]:
+        """Yield the values of unread sections, and of the blocks that they include."""
         for file, line, chunk in raws:
             yield from read_values(file, line + 1, chunk.split("\n")[1:])
             for block in " ".join(_rows_of_setting(chunk, "with")).split():
                 yield from self._value_rows(self._raw.get(("block", block), ()))
 
     def valued(self) -> Iterator[tuple[str, bool]]:
-        """Yield the names that have values, each with whether it is for ROS 1."""
+        """Yield (name, whether it is for ROS 1) for each name that has values."""
         named = ((name, raws) for (type_, name), raws in self._raw.items() if type_ in VALUED)
         for name, raws in named:
             found = {_is_of_ros_1(it[2]) for it in raws if has_values(it[2])}
@@ -187,9 +188,9 @@ class Definitions:
         for name in settings.get("with", "").split():
             place = f"{file}:{line}"
             if name in within:
-                raise DefinitionsError(f"{place}: with: {name}: [block {name}] includes itself")
+                raise DefinitionsError(f"{place}: with: {name}: it includes itself; remove it")
             if not self.has("block", name):
-                raise DefinitionsError(f"{place}: with: {name}: there is no [block {name}]")
+                raise DefinitionsError(f"{place}: with: {name}: there is no [block {name}]; add it")
             found = self._find(("block", name), (*within, name))
             sites |= {site.path: site for site in (found[0].sites if found else ())}
         header = read_header(f"{file}:{line}", rows[0])
@@ -228,7 +229,7 @@ def merge(first: PluginDefinition, second: PluginDefinition) -> PluginDefinition
     for site in new:
         if any(share_release(site.releases, it.releases) for it in there.get(site.path, ())):
             raise DefinitionsError(
-                f"{second.file}:{site.line}: {site.path} is there already, in {first.file}"
+                f"{second.file}:{site.line}: {site.path} is in {first.file} already; remove one"
             )
     below = _agreed_setting(first, second, "model_namespace")
     sites = first.sites + tuple(new)
@@ -251,8 +252,9 @@ def merge(first: PluginDefinition, second: PluginDefinition) -> PluginDefinition
 
 
 def _agreed_setting(first: PluginDefinition, second: PluginDefinition, setting: str) -> str:
+    """Return a setting of two sections; raises DefinitionsError where both have it differently."""
     old, new = getattr(first, setting), getattr(second, setting)
     if old and new and old != new:
         place = f"{second.file}:{second.line}"
-        raise DefinitionsError(f"{place}: {setting}: is {old!r} already, in {first.file}")
+        raise DefinitionsError(f"{place}: {setting}: is {old!r} in {first.file}; write the same")
     return str(old or new)

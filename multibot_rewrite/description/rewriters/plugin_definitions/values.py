@@ -53,13 +53,13 @@ class Values(NamedTuple):
 
 
 def is_typed(word: str) -> bool:
-    """Return whether this option of a row is about the value's type."""
+    """Return whether an option of a row is about the value's type."""
     option, given, _ = word.partition("=")
     return bool(given) and option in OPTIONS
 
 
 def has_values(chunk: str) -> bool:
-    """Return whether such rows may be in a section that is not read yet."""
+    """Return whether a section that is not parsed yet may have rows of values."""
     return "\nread: " in chunk or " read=" in chunk or _ROW.search(chunk) is not None
 
 
@@ -99,7 +99,7 @@ def _value_in_row(place: str, path: str, words: list[str]) -> Iterator[Value]:
     if type_ not in TYPES:
         raise DefinitionsError(f"{place}: {path} {type_} is no type, use one of {', '.join(TYPES)}")
     if releases and not is_release_words(releases):
-        raise DefinitionsError(f"{place}: {path} releases={releases} names no releases")
+        raise DefinitionsError(f"{place}: {path} releases={releases} has no releases: write jazzy+")
     # What it is called where values are looked up.
     name, is_attribute, _ = path.partition("@")
     if path.startswith(_NAMED):
@@ -139,7 +139,7 @@ class WiredTopic(NamedTuple):
 
     @property
     def is_moved(self) -> bool:
-        """Return whether it is below a parameter's value, so that no rule is needed to move it."""
+        """Return whether a topic is below a parameter's value, so that no rule is needed to move it."""
         return "{" in self.name
 
 
@@ -166,7 +166,7 @@ def role_and_type(place: str, options: Mapping[str, str]) -> tuple[str, str]:
 
 
 def is_type(text: str) -> bool:
-    """Return whether this is the full name of a message or service type."""
+    """Return whether a text is the full name of a message or service type."""
     package, _, rest = text.partition("/")
     kind, _, name = rest.partition("/")
     return kind in ("msg", "srv") and package.isidentifier() and name.isidentifier()

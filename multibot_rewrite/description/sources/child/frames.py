@@ -77,6 +77,7 @@ def asking(read: Callable[[int], bytes], write: Callable[[bytes], object]) -> As
     """Return the function that asks the parent; it raises the parent's error."""
 
     def ask(what: str, name: str) -> bytes:
+        """Return the parent's answer; raises the parent's error."""
         write(framed(QUESTION, json.dumps([what, str(name)]).encode()))
         kind, data = received(read, _ANSWERS)
         if kind == VALUE:
@@ -91,6 +92,7 @@ def connect(xacro: Any, substitution: Any, ask: Ask) -> None:
     """Let the parent answer what xacro opens, looks for and reads of the environment from now on."""
 
     def opened(name: str, *_: object, **__: object) -> io.TextIOBase:
+        """Return the text file that the parent reads."""
         return io.TextIOWrapper(io.BytesIO(ask(READ, name)), "utf-8")
 
     xacro.open = opened

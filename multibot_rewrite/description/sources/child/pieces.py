@@ -96,6 +96,7 @@ def placed(text: str, place: Spot) -> PiecedText:
 
 
 def _cut_pieces(pieces: Iterable[Piece], start: int, end: int) -> Iterator[Piece]:
+    """Yield the pieces, or parts of them, between two characters."""
     at = 0
     for piece in pieces:
         first, last = max(at, start), min(at + piece.length, end)
@@ -134,6 +135,7 @@ def tracking(
     scalar = yaml.SafeLoader.construct_scalar
 
     def construct(loader: Any, node: Any) -> str:
+        """Return a scalar of a YAML file, with its place there."""
         at = node.start_mark.index + (node.style in ("'", '"'))
         return placed(scalar(loader, node), Spot(number(xacro.filestack[-1]), 0, "", at))
 
@@ -156,6 +158,7 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
     lexer = xacro.LEXER
 
     def expression(text: str, symbols: Any) -> Any:
+        """Return the value of ``${...}``; raises XacroException."""
         try:
             return xacro.safe_eval(evaluated(text, symbols), symbols)
         except Exception as error:  # an expression of the file may raise anything
@@ -163,6 +166,7 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
             raise xacro.XacroException(exc=error, suffix=suffix) from error
 
     def extension(text: str, symbols: Any) -> str:
+        """Return the text of ``$(...)``, with the pieces of an argument."""
         said = str(evaluated(text, symbols))
         found = xacro.eval_extension(f"$({said})")
         words = said.split()
@@ -170,6 +174,7 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
         return str(known if words[:1] == ["arg"] and known == found else found)
 
     def result(kind: int, part: str, symbols: Any) -> Any:
+        """Return what xacro makes of a token, with its place."""
         if kind == lexer.EXPR:
             return _with_places(expression(part[2:-1], symbols), part)
         if kind == lexer.EXTENSION:
@@ -177,6 +182,7 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
         return part[1:] if kind == lexer.DOLLAR_DOLLAR_BRACE else part
 
     def evaluated(text: str, symbols: Any) -> Any:
+        """Return the value of a text: one result as it is, several as a text with pieces."""
         results, at = [], 0
         lex = xacro.QuickLexer(lexer)
         lex.lex(str.__str__(text))
@@ -238,6 +244,7 @@ def _macro_parser(parse: Callable[[str], Any]) -> Callable[[str], Any]:
     """Return xacro's parser of macro parameters, with defaults that know where they are written."""
 
     def parsed(text: str) -> Any:
+        """Return (parameter, default with its place, rest of the text)."""
         param, value, rest = parse(text)
         start = len(text) - len(rest)
         if value is not None and value[1]:

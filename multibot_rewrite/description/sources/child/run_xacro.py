@@ -89,7 +89,7 @@ def _failure(error: Exception, file: str, marks: Marks) -> dict[str, object]:
 
 
 def _place(error: BaseException) -> tuple[int, int, str] | None:
-    """Return the file, element and attribute that xacro was processing."""
+    """Return the number of the file and of the element, and the attribute, that failed; or None."""
     for frame in reversed(list(_frames(error))):
         node = next((frame.f_locals[it] for it in _NODES if it in frame.f_locals), None)
         element: Any = node if hasattr(node, "tagName") else getattr(node, "parentNode", None)
@@ -196,6 +196,7 @@ def marking(xacro: Any, marks: Marks) -> None:
         return document
 
     def called(node: Any, macros: Any, symbols: Any) -> Any:
+        """Return what xacro's handler does, after noting the call of a macro."""
         at = node.getUserData(MARK)
         # A dynamic call comes back under the name of its macro.
         if at is None or node.tagName == _CALL or not node.tagName.startswith("xacro:"):

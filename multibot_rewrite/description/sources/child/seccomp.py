@@ -3,7 +3,7 @@
 
 Calls that open files are left where Landlock says which. Sources: Linux,
 Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
-include/uapi/asm-generic/unistd.h."""
+include/uapi/asm-generic/unistd.h. Memory is as in OpenSSH, sandbox-seccomp-filter.c."""
 
 import ctypes
 import errno
@@ -47,7 +47,7 @@ _LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _ANSWER = 0x20, 0x15, 0x35, 0x45, 0x06
 _KILL, _ALLOW, _REFUSE = 0x80000000, 0x7FFF0000, 0x00050000 | errno.EPERM
 # Offsets in the record of a call: its number, the architecture, the low half of the third argument.
 _NUMBER, _ARCHITECTURE, _SECOND, _THIRD = 0, 4, 24, 32
-_PROT_EXEC = 4
+_PROTECTED = 0xFFFFFFFF & ~3
 # Numbers from here on are the other interface (x32) of the same processor.
 _X32 = 0x40000000
 
@@ -65,7 +65,7 @@ _ASKED = (
 
 
 class Machine(NamedTuple):
-    """An architecture's audit number and allowed calls; ``memory``: unless they make it executable.
+    """An architecture's audit number and allowed calls; ``memory``: to read and write it alone.
 
     ``opens`` is openat; ``asks`` are futex, and for files ioctl and fcntl."""
 
@@ -154,7 +154,7 @@ def filter_program(machine: Machine, files: bool = False) -> bytes:
         steps += [
             (_EQUAL, 0, 4, number),
             (_LOAD, 0, 0, _THIRD),
-            (_ANY_BIT, 1, 0, _PROT_EXEC),
+            (_ANY_BIT, 1, 0, _PROTECTED),
             (_ANSWER, 0, 0, _ALLOW),
             (_ANSWER, 0, 0, _REFUSE),
         ]

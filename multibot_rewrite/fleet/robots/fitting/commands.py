@@ -30,7 +30,7 @@ from multibot_rewrite.system.words import PLAIN
 def driving(
     nodes: Sequence[NodeFacts], own: Collection[str], bridged: Iterable[str]
 ) -> Sequence[NodeFacts]:
-    """Return the nodes with unheard commands of ``own`` nodes sent to the one drive."""
+    """Return the nodes; commands of ``own`` ones that nobody reads are sent to the one drive."""
     led = topics_of(controllers(nodes), SUBSCRIBES, COMMANDS)
     drives = led or [*bridged]
     if len(led) > 1 or not drives:
@@ -256,7 +256,7 @@ def _with_own_inputs(node: NodeFacts, taken: Collection[str]) -> tuple[NodeFacts
 
 
 def _input_role(topic: str, usual: Usual) -> str:
-    """Return the id of the node set's input for a topic; the planner's for any other topic."""
+    """Return the id of the mux input for a topic in the node set; for another topic the planner's."""
     ids = (_input_id(name) for name, value in usual.items() if value == topic)
     return next(ids, _OF_PLANNER)
 

@@ -65,7 +65,7 @@ def is_led_elsewhere(member: Member, spec: RobotSpec) -> bool:
 
 
 def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
-    """Yield the transforms of simulator systems, each with the last name of its topic."""
+    """Yield (last name of the topic, transform) for what systems of a simulator send."""
     for host, section in collect(member.source, member.tree).served:
         sites = frame_sites(host, section, _NAMING)
         frames = [text_at(host, it.path) or default_of(host, it.default, _NAMING) for it in sites]
@@ -111,22 +111,29 @@ def _edges_in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterat
     yield from (it for node in nodes if node.name not in free for it in sent_by(node, ""))
 
 
-def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[Edge]) -> bool:
-    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``."""
+def sends_too(
+    nodes: Iterable[NodeFacts],
+    free: Collection[str],
+    sent: Sequence[Edge],
+    any_parent: bool = False,
+) -> bool:
+    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``.
+
+    With ``any_parent`` it may place that below another frame."""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
     sure = (it for it in nodes if not it.when)
-    own = {_placed_body(it, bodies) for it in _edges_in_files(sure, free)}
-    return any(_placed_body(it, bodies) in own for it in sent)
+    own = {_placed_body(it, bodies, any_parent) for it in _edges_in_files(sure, free)}
+    return any(_placed_body(it, bodies, any_parent) in own for it in sent)
 
 
 def have_two_parents(sent: Iterable[Edge]) -> bool:
-    """Do transforms that plugins have ``sent`` give a frame two parents? Not all of them are for tf."""
+    """Return whether a frame has two parents by what plugins have ``sent``: not all is for tf."""
     return any(len(it) > 1 for it in sets_by_key((it.child, it.parent) for it in sent).values())
 
 
-def _placed_body(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
-    """Return what a transform places and where; all frames of the body count as one."""
-    return edge.parent, "" if edge.child in bodies else edge.child
+def _placed_body(edge: Edge, bodies: Collection[str], any_parent: bool = False) -> tuple[str, str]:
+    """Return (parent, child) of a transform; the robot's body, and any parent if asked, are ""."""
+    return "" if any_parent else edge.parent, "" if edge.child in bodies else edge.child
 
 
 def _transform_switch(node: NodeFacts) -> str:
@@ -170,7 +177,7 @@ def with_frames(node: NodeFacts, fits: Frames) -> NodeFacts:
 def changed_frames(
     nodes: Iterable[NodeFacts], before: Iterable[NodeFacts]
 ) -> Mapping[tuple[str, str], str]:
-    """Return the frames of nodes that are others than ``before``, by last name and parameter."""
+    """Return by node and parameter the frames that are others than ``before``."""
     old = {(node.name, it.parameter): it.default for node in before for it in node.frames}
     return {
         (node.kind.rpartition("/")[2], it.parameter): it.default

@@ -95,19 +95,20 @@ def command_rows(spec: RobotSpec) -> list[BridgeRow]:
 
 
 def alone(name: str) -> str:
-    """Return a topic without the placeholder of the robot, or of a model: ``model/cmd_vel``."""
+    """Return a gz topic without the robot's or model's placeholder: ``model/cmd_vel``."""
     found = GZ_MODEL.fullmatch(name)
     return f"model{found['rest']}" if found else name.rpartition("<namespace>/")[2].strip("/")
 
 
 def wanted(node: NodeFacts, end: Endpoint) -> str:
-    """Return what an end hears; empty for none that a sensor sends, whatever else comes."""
+    """Return the kind of sensor data that an end reads; empty for one that no sensor has to send."""
     terms = (it for all_ in parse_condition(end.when) for it in all_)
     is_asked = end.role == SUBSCRIBES and all(it.parameter == HEARD for it in terms)
     return _image_kind(node, end) if is_asked else ""
 
 
 def _image_kind(node: NodeFacts, end: Endpoint) -> str:
+    """Return the type of an end, or ``DEPTHS`` for one of depth images."""
     deep = _DEPTH in f"{node.package}/{end.name}"
     of_depths = end.type == IMAGE and deep and end.name.partition("/")[0] not in _OF_COLOURS
     return DEPTHS if of_depths else end.type

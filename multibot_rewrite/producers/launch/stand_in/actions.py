@@ -61,7 +61,7 @@ def not_read(name: str) -> Any:
 
 
 def doing(name: str, names: str, do: Callable[..., object]) -> type[Action]:
-    """Return a class of actions that do something in the context with the texts they are given."""
+    """Return a class of actions that call ``do`` with the context and the texts they are given."""
 
     def execute(it: Any, context: LaunchContext) -> None:
         do(context, *(text_of(context, vars(it)[word]) for word in it.names))
@@ -95,7 +95,7 @@ class DeclareLaunchArgument(Action):
 
     @property
     def told(self) -> str:
-        """Its description as an error has it."""
+        """The argument's description as an error has it."""
         text = self.description
         if self.choices is None:
             return "no description given" if text is None else text

@@ -167,7 +167,7 @@ def _are_alike(values: list[Any]) -> bool:
 
 
 def _is_substituted(value: Any) -> bool:
-    """Return whether it is a substitution, or texts with one."""
+    """Return whether a value is a substitution, or texts with one."""
     several = value if isinstance(value, list | tuple) else ()
     texts = all(isinstance(it, str) or hasattr(it, "perform") for it in several)
     return hasattr(value, "perform") or (texts and any(hasattr(it, "perform") for it in several))

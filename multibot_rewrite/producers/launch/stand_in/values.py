@@ -184,6 +184,7 @@ def _environment_variable(it: Any, context: LaunchContext) -> str:
 def _look_up(
     context: LaunchContext, known: Mapping[str, str], name: str, usual: Text, what: str
 ) -> str:
+    """Return the value of a name, or the usual one; raises SubstitutionFailure without either."""
     if name not in known and usual is None:
         raise SubstitutionFailure(f"{what} '{name}' does not exist")
     return known[name] if name in known else text_of(context, str_of(usual))

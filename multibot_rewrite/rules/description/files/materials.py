@@ -72,7 +72,7 @@ def material_differs(subject: Subject) -> Iterator[Problem]:
     for material in looks:
         name, look = material.get("name", ""), _colour_and_texture(material)
         if first.setdefault(name, look) != look:
-            hint = "the first definition of the name is used"
+            hint = "rename it: the first definition of a name is used"
             message = f"material {name!r} has another colour or texture than its first definition"
             yield Problem(material, message, "name", hint)
 

@@ -98,7 +98,7 @@ def mesh_without_file(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_shape(mesh: _Element) -> bool:
-    """Return whether it is the shape of a visual or collision of a link."""
+    """Return whether a mesh is the shape of a visual or collision of a link."""
     above = [str(it.tag) for it in mesh.iterancestors()][:4]
     return above[:1] + above[2:] == ["geometry", "link", "robot"] and mesh.find("uri") is None
 

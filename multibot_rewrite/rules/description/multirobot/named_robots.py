@@ -36,7 +36,7 @@ ByNaming = Callable[[Inventory, Naming], Iterable[Problem]]
 
 
 def _hazard_by_naming(hazard: ByNaming) -> Hazard:
-    """Return a check of inventory and renames from one that needs only the naming."""
+    """Return a check of inventory and renames that asks one of inventory and naming."""
     return lambda inventory, renames: hazard(inventory, renames.naming)
 
 

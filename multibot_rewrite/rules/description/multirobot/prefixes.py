@@ -83,7 +83,7 @@ def scopes(root: _Element) -> list[Scope]:
 
 
 def _declares(element: _Element) -> bool:
-    """Return whether it is a link or joint right below the robot or an element of xacro."""
+    """Return whether an element is a link or joint right below the robot or an element of xacro."""
     if element.tag == "joint" and element.find("parent") is None:
         return False
     above = element.getparent()
@@ -103,7 +103,7 @@ def _names_in(text: str) -> Iterator[str]:
 
 
 def _properties_by_name(root: _Element) -> Mapping[str, list[str]]:
-    """Return a name -> the properties whose values use it."""
+    """Return by name the properties whose values use it."""
     every = ((it, it.get("value", "")) for it in root.iter("{*}property"))
     made = ((it, value) for it, value in every if "$" in value and is_xacro(it))
     users = lists_by_key(
@@ -134,7 +134,7 @@ def prefixes(names: list[str]) -> list[str]:
 
 
 def is_xacro(element: _Element) -> bool:
-    """Return whether it is an element of xacro."""
+    """Return whether an element is one of xacro."""
     tag = element.tag
     return isinstance(tag, str) and "xacro}" in tag
 

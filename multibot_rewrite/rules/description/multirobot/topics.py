@@ -46,7 +46,7 @@ def _claims_by_kind(subject: Subject) -> Mapping[str, Sequence[tuple[int, Claim]
 
 
 def is_plain(text: str) -> bool:
-    """Return whether it is a name: not empty and not a placeholder."""
+    """Return whether a text is a name: not empty and not a placeholder."""
     return bool(text.strip("/")) and NOT_PLAIN.isdisjoint(text) and not text.startswith("__")
 
 
@@ -63,7 +63,7 @@ def process_wide_plugins(subject: Subject) -> set[_Element]:
 
 
 def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]]:
-    """Yield kind, default and tag of what urdf-postfix would insert, except namespaces."""
+    """Yield (plugin, (kind, default, tag)) for what urdf-postfix would insert, but no namespaces."""
     for host, it in _insertions(subject):
         tag = it.xml[1:].partition(">")[0].partition(" ")[0]
         if it.shared and it.kind != "namespace" and tag != "remapping":
@@ -71,7 +71,7 @@ def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]
 
 
 def missing_defaults(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
-    """Yield the default names that urdf-postfix would replace, except shared ones, by plugin."""
+    """Yield (plugin, default) for names that urdf-postfix would replace, except shared ones."""
     yield from ((host, it) for host, it in _insertions(subject) if not it.shared)
 
 
@@ -147,7 +147,7 @@ def _is_of_gz(claim: Claim) -> bool:
 
 
 def _is_classic(subject: Subject) -> bool:
-    """Return whether it is for Gazebo Classic, which puts the model's name before sensor topics."""
+    """Return whether a file is for Gazebo Classic, which names sensor topics after the model."""
     from multibot_rewrite.planning.bridged_topics import GZ_LIBRARIES, plugin_libraries
 
     keys = plugin_libraries(subject.inventory)

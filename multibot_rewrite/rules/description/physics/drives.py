@@ -82,7 +82,7 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
                 message = f"{left.joint.name!r} is the left and the right wheel"
                 yield Problem(right.named, message, "", "name the joint of the other wheel")
             for words in rolling_faults(drive.robot, left, right):
-                yield Problem(right.named, words, "", "the drive takes them for wheels that roll")
+                yield Problem(right.named, words, "", "correct it, or name other wheels")
             if are_opposite(left, right):
                 names = f"{left.joint.name!r} and {right.joint.name!r}"
                 message = f"the axes of wheels {names} point in opposite directions"
@@ -98,6 +98,7 @@ def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
 
 
 def _why_not_turning(joint: Joint) -> str:
+    """Return why a wheel cannot turn, for a message; empty if it can."""
     if joint.type in ("fixed", "prismatic"):
         return f"is {joint.type}: it cannot turn"
     limit = joint.parts.get("limit")

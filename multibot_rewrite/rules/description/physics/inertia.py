@@ -32,7 +32,7 @@ SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius
 
 
 def inertials(robot: Robot) -> Iterator[tuple[Link, Inertial]]:
-    """Yield the links that have an inertial, with it."""
+    """Yield (link, inertial) for the links that have one."""
     for link in robot.links:
         if link.inertial is not None:
             yield link, link.inertial
@@ -50,7 +50,7 @@ def moves(robot: Robot, name: str) -> bool:
 
 
 def parts_with_mass(robot: Robot) -> dict[str, int]:
-    """Return body -> how many of its links have a mass."""
+    """Return by body how many of its links have a mass."""
     count = dict.fromkeys(robot.body.values(), 0)
     for link, inertial in inertials(robot):
         if link.name in robot.body and inertial.mass != 0:
@@ -134,7 +134,7 @@ def _model_faults(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_static(link: _Element) -> bool:
-    """Return whether it is of a static model, whose masses Gazebo Classic ignores (Link.cc)."""
+    """Return whether a link is of a static model, whose masses Gazebo Classic ignores (Link.cc)."""
     model = link.getparent()
     static = "" if model is None else (model.findtext("static") or "").strip()
     return static in ("1", "true")
@@ -198,7 +198,7 @@ ROUNDING = 0.01
 
 
 def _is_possible(moments: tuple[float, ...]) -> bool:
-    """Return whether it is certainly possible; off-diagonal values shift moments by ``off`` at most."""
+    """Return whether moments are surely possible; off-diagonal ones shift them by ``off`` at most."""
     xx, xy, xz, yy, yz, zz = moments
     off = abs(xy) + abs(xz) + abs(yz)
     return min(xx, yy, zz) >= off and max(xx, yy, zz) + off <= (xx + yy + zz) / 2
@@ -307,7 +307,7 @@ def mass_tiny(subject: Subject) -> Iterator[Problem]:
 
 
 def _masses(robot: Robot) -> dict[str, float]:
-    """Return body -> its mass with all that is fixed to it; what is no number counts as 1 kg."""
+    """Return by body its mass with all that is fixed to it; what is no number counts as 1 kg."""
     mass = dict.fromkeys(robot.body.values(), 0.0)
     for link, inertial in inertials(robot):
         body = robot.body.get(link.name)

@@ -134,7 +134,7 @@ _Shapes = list[tuple[_Element, _Element]]
 
 @memoized
 def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
-    """Return for each link the shapes of its visuals and those of its collisions."""
+    """Return by link the shapes of its visuals, and those of its collisions."""
     found: dict[_Element, tuple[_Shapes, _Shapes]]
     found = {it.element: ([], []) for it in subject.robot.links}
     for link, element, _, shape in parts(subject):

@@ -58,7 +58,7 @@ def optical_frame_not_rotated(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_straight(pose: Pose | None) -> bool:
-    """Return whether x points forward and z up."""
+    """Return whether a pose leaves x forward and z up."""
     return (
         pose is not None and turned(pose.matrix, X)[0] > SAME and turned(pose.matrix, Z)[2] > SAME
     )
@@ -79,7 +79,7 @@ def camera_at_optical_frame(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_optical(pose: Pose) -> bool:
-    """Return whether x is to the right of the parent, and z forward."""
+    """Return whether a pose turns x to the right of the parent, and z forward."""
     return dot(turned(pose.matrix, X), Y) < -SAME and turned(pose.matrix, Z)[0] > SAME
 
 

@@ -111,7 +111,7 @@ def _needs_a_drive(joint: Joint) -> bool:
 
 
 def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
-    """Yield joints in <ros2_control> that follow another one, and which."""
+    """Yield (joint in <ros2_control>, joint that it follows)."""
     for it, joint in controlled_joints(subject):
         mimic = joint.element.find("mimic")
         if mimic is not None and it.get("mimic", "").strip().lower() not in ("false", "0"):
@@ -229,10 +229,8 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB242", "nothing-to-control", ERROR)
 def nothing_to_control(subject: Subject) -> Iterator[Problem]:
-    """Report plugins of the two simulators in a whole description without a system.
-
-    Source: component_parser.cpp throws; gz_ros2_control_plugin.cpp, gazebo_ros2_control_plugin.cpp
-    catch it."""
+    """Report plugins of the two simulators in a whole description without a system."""
+    # component_parser.cpp throws; gz_ros2_control_plugin.cpp, gazebo_ros2_control_plugin.cpp catch it.
     if not subject.robot.links or subject.elements.every("ros2_control"):
         return
     for plugin in manager_plugins(subject):
@@ -285,4 +283,4 @@ def interface_not_simulated(subject: Subject) -> Iterator[Problem]:
                 known = name in simulator.takes or not name or slip_of(name, STANDARD) != ""
                 if not known or name == "acceleration":
                     message = f"{text_of(plugin)} exports no command interface {name!r}"
-                    yield Problem(it, message, "name", f"it knows {', '.join(simulator.takes)}")
+                    yield Problem(it, message, "name", f"use one of {', '.join(simulator.takes)}")

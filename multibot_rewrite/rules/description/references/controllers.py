@@ -139,7 +139,7 @@ def mujoco_joint_without_name(subject: Subject) -> Iterator[Problem]:
 
 
 def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
-    """Yield the joints of the bodies of a MuJoCo model and its includes, each with its file."""
+    """Yield (joint, file) for the bodies of a MuJoCo model and its includes."""
     with suppress(InputError):
         root = read_xml(read_file(path), path)
         yield from ((it, path) for above in _BODIES for it in root.iterfind(f".//{above}/joint"))
@@ -153,7 +153,7 @@ def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
 
 @memoized
 def _claimed(subject: Subject) -> list[tuple[_Element, tuple[Interface, ...]]]:
-    """Return each controller file's exported and claimed interfaces, with the naming element."""
+    """Return (element that names it, interfaces exported and claimed) for each controllers' file."""
     systems = subject.elements.tops("ros2_control")
     files = _controller_files(subject, systems[0]) if systems else ()
     found = ((element, _interfaces(subject, path, is_sure)) for element, path, is_sure in files)
@@ -177,12 +177,12 @@ def _chosen(subject: Subject) -> tuple[str, ...]:
 
 
 def _place_of(it: Interface) -> str:
-    """Return where it is written: ``file.xacro:12``."""
+    """Return where an interface is written: ``file.xacro:12``."""
     return f"{os.path.basename(it.place.file)}:{it.place.line}"
 
 
 def _controller_files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
-    """Yield each file of controllers, where it is named, and whether it is surely this robot's."""
+    """Yield (element that names it, file, is it surely this robot's) of each controllers' file."""
     named = [
         element
         for host in subject.inventory.hosts

@@ -267,7 +267,7 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _state_joints(root: _Element) -> Iterator[tuple[_Element, str, str]]:
-    """Yield the joints of named states, with the group and the joint's name."""
+    """Yield (element, group, joint) for the joints of named states."""
     for state in root.iterchildren("group_state"):
         for it in state.iterchildren("joint"):
             yield it, text_of(state, "group"), text_of(it)

@@ -50,7 +50,7 @@ def axis_length(subject: Subject) -> Iterator[Problem]:
 
 @memoized
 def _axes_with_length(subject: Subject) -> list[tuple[Joint, _Element, float]]:
-    """Return the joints that use an <axis>, with it and its length; without xyz that is 0."""
+    """Return (joint, axis, its length) of joints that use one; without xyz the length is 0."""
     found = []
     for joint, axis in joints_with(subject.robot, "axis"):
         if joint.type in ONE_AXIS:
@@ -185,7 +185,7 @@ def prismatic_units(subject: Subject) -> Iterator[Problem]:
 
 
 def _moves_nothing(robot: Robot, joint: Joint) -> bool:
-    """Return whether its child is an empty link at the end of a robot whose other links have a body."""
+    """Return whether a joint's child is an empty link at the end of a robot that else has bodies."""
     child = robot.link.get(joint.child)
     empty = child is not None and not len(child.element) and joint.child not in robot.below
     return empty and any(len(it.element) for it in robot.links)
@@ -227,7 +227,7 @@ def _is_degrees(angle: float) -> bool:
 
 @memoized
 def _bounds(subject: Subject) -> list[tuple[Joint, _Element, float, float]]:
-    """Return the joints of known types that have both bounds, with the limit and its bounds."""
+    """Return (joint, limit, lower, upper) for joints of known types that have both bounds."""
     found = []
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type in TYPES:

@@ -71,7 +71,7 @@ def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
 
 
 def _leaders(robot: Robot) -> dict[str, str]:
-    """Return mimicking joint -> the joint it follows."""
+    """Return by mimicking joint the joint that it follows."""
     return {
         joint.name: mimic.get("joint", "")
         for joint, mimic in joints_with(robot, "mimic")
@@ -147,7 +147,7 @@ def start_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _start_values(subject: Subject) -> Iterator[tuple[_Element, str]]:
-    """Yield each value that a joint starts at, and the joint."""
+    """Yield (element, joint) for each value that a joint starts at."""
     for system in subject.elements.tops("ros2_control"):
         for joint in system.iterchildren("joint"):
             for state in joint.iterchildren("state_interface"):
@@ -245,7 +245,7 @@ def _beyond_limits(joint: Joint, interface: _Element, low: float, high: float) -
         if not low * _SLACK - 0.01 <= value <= high * _SLACK + 0.01:
             name = interface.get("name")
             message = f"{param.get('name')} of {name} of joint {joint.name!r} is {value:g}"
-            hint = f"its <limit> is {low:g} to {high:g}"
+            hint = f"stay in its <limit>: {low:g} to {high:g}"
             yield Problem(param, message, "", hint, level="" if name == "position" else NOTE)
 
 
