@@ -243,7 +243,11 @@ async def _places(params: Any) -> list[Place]:
 async def _locations(params: Any) -> list[lsp.Location]:
     context = getattr(params, "context", None)  # that of references
     wanted = {False, context.include_declaration} if context else {True}
-    return server.locations(it for it in await _places(params) if it.declares in wanted)
+    places = [it for it in await _places(params) if it.declares in wanted]
+    # Robots of one package may each have the name: it is that of the file itself.
+    here = server.workspace.get_text_document(params.text_document.uri).path
+    own = [it for it in places if os.path.realpath(it.file) == os.path.realpath(here)]
+    return server.locations(places if context else own or places)
 
 
 @server.feature(lsp.TEXT_DOCUMENT_RENAME)

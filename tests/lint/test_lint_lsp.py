@@ -330,6 +330,8 @@ def test_names_in_xacro_are_found_where_they_are_written(editor: Editor, tmp_pat
     assert editor.definition(path, MACRO, 'parent link="|base_link') == [
         ("wheels.urdf.xacro", 8, "base_link")
     ]
+    (tmp_path / "other.urdf").write_text(URDF)  # has a link of that name, too
+    assert [it[0] for it in editor.definition(path, MACRO, 'link name="|base_link')] == [path.name]
     # Put together of an argument: the tag that makes it.
     ((_, line, text),) = editor.definition(path, MACRO, 'child link="${side}|_wheel')
     assert (line, text) == (3, '<link name="${side}_wheel"/>')
@@ -416,6 +418,10 @@ def test_configuration_and_options_hold(package: Path, tmp_path: Path) -> None:
     with edited(tmp_path, "--select", "MB2,MB6") as editor:
         assert codes(editor.open(tmp_path / "a.urdf", wrong)) == ["MB202"]
         assert editor.open(tmp_path / "left" / "a.urdf", wrong) == []
+        (tmp_path / "urdf-lint.toml").write_text('ignore = ["MB610"]\nbaseline = "known.json"\n')
+        (tmp_path / "b.urdf").write_text(wrong)
+        urdf_lint([str(tmp_path / "b.urdf"), "--write-baseline", str(tmp_path / "known.json")])
+        assert codes(editor.open(tmp_path / "b.urdf", wrong)) == []
         (tmp_path / "urdf-lint.toml").write_text('ignor = ["MB610"]\n')
         (found,) = editor.change(tmp_path / "a.urdf", URDF)
         assert "urdf-lint.toml: unknown key 'ignor'" in found.message
