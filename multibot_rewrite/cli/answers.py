@@ -29,7 +29,13 @@ from multibot_rewrite.description.sources.processes import server
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.configured import configured, is_excluded, with_options
+from multibot_rewrite.lint.config.baseline import beyond, read_baseline
+from multibot_rewrite.lint.config.configured import (
+    Configured,
+    configured,
+    is_excluded,
+    with_options,
+)
 from multibot_rewrite.lint.failures import failure
 from multibot_rewrite.lint.files.included import set_among
 from multibot_rewrite.lint.files.named import descriptions_below
@@ -58,13 +64,16 @@ def answer(connection: Connection) -> None:
 def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
     """Return the findings of a file; none for a file of a kind that is not linted."""
     try:
-        kind, settings = recognised(read_file(path)), _settings(options, path)
-        if settings and kind == FLEET:
-            fleet = closed_plan(plan_fleet(read_fleet(path, settings.distro, os.environ)))
+        kind, config = recognised(read_file(path)), _configured(options, path)
+        if config and kind == FLEET:
+            fleet = closed_plan(plan_fleet(read_fleet(path, config.settings.distro, os.environ)))
             found = (*fleet.table.problems, *fleet.gaps)
             return [it if it.file else it._replace(file=path) for it in found]
-        is_linted = settings and (kind in _LINTED or path.endswith(_ENDS))
-        return lint_file(path, settings) if settings and is_linted else ()
+        if not config or (kind not in _LINTED and not path.endswith(_ENDS)):
+            return ()
+        findings, baseline = lint_file(path, config.settings), config.baseline
+        known = read_baseline(baseline) if baseline else {}
+        return beyond(findings, known, baseline, [path])[0] if known else findings
     except RewriteRefused as error:
         return error.findings
     except MultibotError as error:
@@ -72,11 +81,12 @@ def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
         return [failure(path, own, Settings())]
 
 
-def _settings(options: argparse.Namespace, path: str) -> Settings | None:
-    """Return the settings for a file; None for one that the configuration leaves out."""
+def _configured(options: argparse.Namespace, path: str) -> Configured | None:
+    """Return the configuration for a file; None for one that it leaves out."""
     config = with_options(configured(path, options.config), **given(options))
     settings, _ = of_release(options.distro or config.distro, config.settings, [path])
-    return None if is_excluded(path, config) else set_among([path], settings)
+    config = config._replace(settings=set_among([path], settings))
+    return None if is_excluded(path, config) else config
 
 
 class LineEdit(NamedTuple):
@@ -89,8 +99,8 @@ class LineEdit(NamedTuple):
 
 def fixed(options: argparse.Namespace, path: str) -> Mapping[str, Sequence[LineEdit]]:
     """Return the edits that fix all in a file that is safe to fix, by its path."""
-    settings, text = _settings(options, path), read_file(path)
-    return {path: _line_edits(text, fix(path, text, settings)[0])} if settings else {}
+    config, text = _configured(options, path), read_file(path)
+    return {path: _line_edits(text, fix(path, text, config.settings)[0])} if config else {}
 
 
 def _line_edits(before: bytes, after: bytes) -> list[LineEdit]:

@@ -38,6 +38,7 @@ except ImportError as error:
 PAUSE, LONGEST = 0.03, 60.0
 # How many files are linted at once: on saving, all open ones.
 _AT_ONCE = max(4, os.cpu_count() or 1)
+_OWN = "file:", "untitled:"
 _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
 # A tag with its bracket, an attribute with its value, or a word.
@@ -61,8 +62,11 @@ class Server(LanguageServer):
         self.slots = asyncio.Semaphore(_AT_ONCE)
 
     def opened(self) -> dict[str, TextDocument]:
-        """Return the open documents by their URIs as the editor writes them."""
-        return {it.uri: it for it in self.workspace.text_documents.values()}
+        """Return the open documents by their URIs as the editor writes them.
+
+        An older text of a file (``git:``) is none: its path is that of the file."""
+        documents = self.workspace.text_documents.values()
+        return {it.uri: it for it in documents if it.uri.startswith(_OWN)}
 
     async def ask(self, function: Callable[..., Any], uri: str, *words: Any) -> Any:
         """Return the answer of a function of ``answers``; None for none, an error is shown."""
@@ -239,7 +243,11 @@ async def _places(params: Any) -> list[Place]:
 async def _locations(params: Any) -> list[lsp.Location]:
     context = getattr(params, "context", None)  # that of references
     wanted = {False, context.include_declaration} if context else {True}
-    return server.locations(it for it in await _places(params) if it.declares in wanted)
+    places = [it for it in await _places(params) if it.declares in wanted]
+    # Robots of one package may each have the name: it is that of the file itself.
+    here = server.workspace.get_text_document(params.text_document.uri).path
+    own = [it for it in places if os.path.realpath(it.file) == os.path.realpath(here)]
+    return server.locations(places if context else own or places)
 
 
 @server.feature(lsp.TEXT_DOCUMENT_RENAME)
