@@ -11,6 +11,7 @@ import pytest
 from graph_examples import read_system
 
 from multibot_rewrite.rules.check import judge
+from multibot_rewrite.system.records import MAY, PUBLISHES
 
 TWIST = "geometry_msgs/msg/Twist"
 SCAN, IMU, TEXT = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "std_msgs/msg/String"
@@ -86,6 +87,18 @@ def test_of_plain_data_the_names_have_something_in_common(
         f"/robot1/{other} publishes /robot1/{sent} {pose} as {sent}",
     )
     assert any(it.startswith("MG303") for it in found) is is_meant
+
+
+def test_what_only_may_be_sent_is_not_meant() -> None:
+    """Nav2's controller_server sends motion_target with one of its plugins only."""
+    seen = read_system(
+        "running: /robot1/dock subscribes /robot1/dock_pose geometry_msgs/msg/PoseStamped\n"
+        "running: /robot1/find publishes /robot1/dock_aim geometry_msgs/msg/PoseStamped"
+    )
+    ends = (it._replace(sure=MAY) if it.role == PUBLISHES else it for it in seen.system.ends)
+    assert "MG303" not in {
+        it.code for it in judge(seen._replace(system=seen.system._replace(ends=tuple(ends))))
+    }
 
 
 PAIR = (f"/robot1/amcl subscribes /clock {CLOCK}", f"/robot2/amcl subscribes /clock {CLOCK}")

@@ -192,8 +192,8 @@ def why_not_loaded(plugin: _Element, definitions: Definitions) -> str:
     section, _ = plugin_section(plugin, definitions)
     if not section or (definitions.ros, section.ros, definitions.release) != _LEFT_OVER:
         return ""
-    is_missing = section.source.startswith(_BY_GAZEBO_ROS)
-    return "ROS 2 has no such library: write the plugin that it has for this" if is_missing else ""
+    hint = "ROS 2 has no such library: write the plugin that it has for this"
+    return hint if section.source.startswith(_BY_GAZEBO_ROS) else ""
 
 
 def plugin_name(plugin: _Element) -> str:

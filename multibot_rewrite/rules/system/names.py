@@ -58,7 +58,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             offered = unheard if chooses(end.node) else published
             if near := published.get(_published_instead(seen, end, offered, unheard)):
                 yield _missed_topic(seen, end, near, ERROR)
-            elif other := None if lost else sent_instead(seen, end):
+            elif not lost and (other := sent_instead(seen, end)) and other.name in published:
                 by_kind.setdefault(other.name, []).append(end)
             elif mine := _robots_topics(seen, end):
                 yield _outside_reader(seen, end, mine)
