@@ -395,7 +395,7 @@ def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) ->
         namespace="ns", spaced=("a", "b"), launches=("l", "m"), after=files, left=left
     ) == [
         "argument prefix: 1 description in 2 files; verified",
-        "argument ns: what ROS names in 2 descriptions; verified",
+        "argument ns: namespaces and topics in 2 descriptions; verified",
         "l: it hands prefix on; verified", "m: it hands prefix and ns on; verified",
         "f:3: left as it is: it is odd",
     ]  # fmt: skip
@@ -502,7 +502,7 @@ def test_the_command_of_ros2() -> None:
     [
         (
             ProofError("x"), 1,
-            "verification failed, nothing was written; this is a fault of the tool: x",
+            "verification failed, nothing was written; this is a fault of the tool, report it: x",
         ),
         (UsageError("x"), 2, "x"), (InputError("x"), 2, "x"), (Unusable("x"), 4, "x"),
         (KeyboardInterrupt(), 130, "interrupted; no half-written file is left"),

@@ -87,7 +87,7 @@ def read_pose(data: bytes, texts: int) -> Transform | None:
 
 
 def read_joint_names(data: bytes) -> tuple[str, ...]:
-    """Return the names in a JointState or JointTrajectory, after its header; empty as above."""
+    """Return the names in a JointState or JointTrajectory, after its header; empty if cut short."""
 
     def names(reader: _Reader) -> tuple[str, ...]:
         _texts(reader, 1)
