@@ -32,8 +32,7 @@ def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     touch, seen = _bodies_with(subject, "collision"), _bodies_with(subject, "visual")
     bare = [it for it in seen if it not in touch and inertia.moves(robot, it) and it in robot.link]
     if not touch and bare[1:]:
-        what = "no link has a <collision>: the robot cannot touch anything"
-        yield Problem(root, what, None, "add one to each link that has <visual>")
+        yield Problem(root, "no link has a <collision>: the robot cannot touch anything")
         return
     for name in bare:
         message = f"link {name!r} has <visual> but no <collision>"
