@@ -42,7 +42,6 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(call)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
-        """Return the result of ``call`` for the checked arguments."""
         values: dict[str, Any] = dict(zip(in_order, args, strict=False)) | kwargs
         # inspect takes longer to bind arguments than all readers do: most calls do not need it.
         if len(values) == len(args) + len(kwargs) and needed <= values.keys() <= names:

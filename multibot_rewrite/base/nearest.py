@@ -39,10 +39,12 @@ def slip_of(name: str, known: Iterable[str]) -> str:
     return same or nearest(name, names, SLIP)
 
 
+_DIGITS = str.maketrans("", "", "0123456789")
+
+
 def differ_in_numbers(name: str, other: str) -> bool:
     """Return whether two names differ in digits alone. Then they are two things: robot1, robot2."""
-    bare, rest = ("".join(c for c in it if not c.isdigit()) for it in (name, other))
-    return bare == rest
+    return name.translate(_DIGITS) == other.translate(_DIGITS)
 
 
 def _letters(name: str) -> str:

@@ -209,7 +209,7 @@ def _temporary_folder() -> Iterator[str]:
             yield folder
     except OSError as error:
         file = f" {error.filename}" if error.filename else ""
-        reason = f"{error.strerror or error}; make room, or set TMPDIR"
+        reason = f"{error.strerror or error}; free some space, or set TMPDIR"
         raise MultibotError(f"a temporary file{file} cannot be written: {reason}") from None
 
 

@@ -160,7 +160,6 @@ def _check_shared(
             names[TOPICS].add(name.text.strip("/"))
 
     def result(given: Mapping[str, Any]) -> object:
-        """Return the text and the findings for the first robot."""
         found = next(made(given))
         return found.data, found.findings
 

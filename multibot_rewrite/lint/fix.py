@@ -98,7 +98,6 @@ def same_meaning(one: _Element, other: _Element) -> bool:
 
 
 def _is_same(one: Meaning, other: Meaning) -> bool:
-    """Return whether two meanings agree, numbers up to rounding."""
     if one._replace(numbers=(), children=()) != other._replace(numbers=(), children=()):
         return False
     if len(one.numbers) != len(other.numbers) or len(one.children) != len(other.children):

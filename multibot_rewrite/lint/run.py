@@ -98,7 +98,6 @@ def _settings_of_files(paths: Sequence[str], settings: Settings) -> tuple[Settin
     from multibot_rewrite.base.workers import limit_time, worker_pool
 
     def within(_: str) -> tuple[Settings, Asked | None]:
-        """Return the settings, and what making them asked of the disk."""
         limit_time(settings.seconds)
         return look()
 

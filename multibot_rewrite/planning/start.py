@@ -192,7 +192,6 @@ def in_order(starts: Sequence[Start]) -> Iterator[Led]:
         below.setdefault(leader if alike and leader != at else -1, []).append(at)
 
     def led(at: int) -> Led:
-        """Return a process with all that waits for it."""
         return Led(starts[at], tuple(map(led, below.get(at, ()))))
 
     yield from map(led, below.get(-1, ()))

@@ -82,7 +82,6 @@ def revalued(text: Spanned, element: _Element, name: str, value: str) -> Edit | 
 
 
 def _attribute_span(text: Spanned, element: _Element, name: str) -> tuple[int, int] | None:
-    """Return start and end of an attribute's value; None where it is not found."""
     return attribute_slot(text.source, text.starts[element], name, element.get(name, ""))
 
 

@@ -79,6 +79,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
     "described robots": _robots_of_description,
     "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
+    "a frame": lambda seen, it: ("" for x in it.names[:1] if not x.startswith("/")),
     "a tf topic": lambda seen, it: ("" for x in _ends(seen, it.names) if x.type == TF),
     "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),
     "sent tf": lambda seen, it: (
@@ -88,7 +89,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
 
 
 def _facet_values(seen: Index, it: Finding, common: str, side: int) -> Set[tuple[str, ...]]:
-    """Return what a cause (side 0) or what comes of it (-1) has of ``robot and server = node``."""
+    """Return the values that a cause (side 0), or what comes of it (-1), has in ``common``."""
     facets = (one.split(" = ")[side] for one in common.split(" and "))
     return {*product(*(_FACETS[facet](seen, it) for facet in facets))}
 

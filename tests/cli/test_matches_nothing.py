@@ -103,7 +103,7 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
         ("urdf-lint rover.urdf --target foo", "use one of mjcf"),
         ("urdf-lint rover.urdf --roots nosuch", "argument --roots: 'nosuch' is no folder"),
         ("multibot plan rover.urdf r1 --roots nosuch", "argument --roots: 'nosuch' is no folder"),
-        ("urdf-lint rover.urdf sim:=gz", "NAME:=VALUE is for xacro, rover.urdf is none"),
+        ("urdf-lint rover.urdf sim:=gz", "rover.urdf is no xacro: leave out NAME:=VALUE"),
         ("urdf-lint rover.urdf --urdf rover.urdf", "--urdf is for an SRDF or a related file"),
         (
             "multibot check --from graph.json --domain 5",

@@ -225,7 +225,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
             "multibot inspect --strict",
             "--fail-on does that, which urdf-postfix, urdf-lint, multibot",
         ),
-        ("urdf-postfix nosuch.yaml robot1", "nosuch.yaml is not there\n"),
+        ("urdf-postfix nosuch.yaml robot1", "nosuch.yaml is not there; correct the path\n"),
         (
             "multibot plan nosuch.yaml",
             "nosuch.yaml is not there; multibot init PATH... writes a fleet",

@@ -119,7 +119,7 @@ def test_the_policies_of_a_profile_are_those_of_rmw_by_number(field: str) -> Non
         (own,) = written["nodes"][0]["publishers"]
         assert own["qos"][field] == number
     beyond = re.sub(rf"({field}): \d", rf"\1: {len(WORDS[field])}", MESSAGE)
-    with pytest.raises(InputError, match=f"there is no policy {len(WORDS[field])}"):
+    with pytest.raises(InputError, match=f"no policy {len(WORDS[field])}"):
         from_yaml(beyond, "g")
 
 
@@ -189,7 +189,7 @@ def changed(key: str, new: object) -> str:
     [
         (changed("name", "state"), "'state' is not a full name"),
         (changed("name", 7), "nodes[0].publishers[0].name: expected text, not 7"),
-        (changed("qos.reliability", 9), "there is no policy 9"),
+        (changed("qos.reliability", 9), "no policy 9"),
         (changed("qos.history", -1), "there is no policy -1"),
         (changed("qos.deadline.sec", "soon"), "qos.deadline.sec: expected a whole number"),
         (changed("type.hash.value", [300]), "not 0 to 255; record the graph again"),

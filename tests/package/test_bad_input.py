@@ -274,7 +274,9 @@ def test_strip_with_other_options(tmp_path: Path, words: tuple[str, ...]) -> Non
     [
         pytest.param("frame uses lnk", ("unknown kind 'lnk'", "link"), id="kind"),
         pytest.param("a//b uses link", ("bad path 'a//b'",), id="path"),
-        pytest.param("x uses link\nx uses joint", ("x is there already", "line 2"), id="twice"),
+        pytest.param(
+            "x uses link\nx uses joint", ("x is in line 2 already", "remove one"), id="twice"
+        ),
         pytest.param("colour: red", ("unknown setting 'colour'",), id="setting"),
     ],
 )

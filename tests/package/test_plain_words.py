@@ -92,15 +92,21 @@ def test_messages_have_no_private_term() -> None:
 MOST_IN_DOCSTRINGS = 12
 
 
+def _docstrings() -> Iterator[str]:
+    for node in chain.from_iterable(map(ast.walk, sources().values())):
+        if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Module):
+            yield ast.get_docstring(node) or ""
+
+
 def test_docstrings_have_fewer_private_terms() -> None:
-    docs = (
-        ast.get_docstring(node) or ""
-        for tree in sources().values()
-        for node in ast.walk(tree)
-        if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Module)
-    )
-    found = [it for text in docs for it in found_in(text, PAGE_TERMS)]
+    found = [it for text in _docstrings() for it in found_in(text, PAGE_TERMS)]
     assert len(found) <= MOST_IN_DOCSTRINGS, found
+
+
+def test_a_docstring_names_what_is_returned() -> None:
+    """Not ``whether it is``: before the signature is read, ``it`` may be anything."""
+    vague = re.compile(r"(Return|Yield) (whether (it|this|that) (is|has)\b|its )|Its ")
+    assert [it for it in _docstrings() if vague.match(it)] == []
 
 
 def test_a_name_of_a_rule_has_no_private_term() -> None:

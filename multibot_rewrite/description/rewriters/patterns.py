@@ -135,7 +135,6 @@ def _parse_sequence(pieces: deque[str], depth: int) -> _Piece:
         row.append(piece)
 
     def add(states: list[_State], after: int) -> int:
-        """Add the states of all pieces; return the first."""
         for piece in reversed(row):
             after = piece(states, after)
         return after
@@ -188,7 +187,6 @@ def _repeated(piece: _Piece, least: int, most: int | None) -> _Piece:
         raise PatternError(f"{{{least},{most}}} is no count")
 
     def add(states: list[_State], after: int) -> int:
-        """Add the states of all repetitions; return the first."""
         start = after
         if most is None:
             start = _add_state(states, None)

@@ -208,7 +208,6 @@ class Tree:
         keys = SELECTORS[type_]
 
         def select(element: _Element) -> TreeNode:
-            """Return the node of an element's own section, or ``base``."""
             for key in keys(element):
                 found = _by_ros(self.definitions.find(type_, key), element)
                 if found is not None and not _is_gz_sim_class(element, key, found):

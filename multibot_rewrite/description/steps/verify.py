@@ -122,7 +122,6 @@ def _names_as_in_source(
 
 
 def _replaces_text(plan: Plan) -> bool:
-    """Return whether an edit of the plan removes text, and not only adds some."""
     return any(edit.start < edit.end for edit in plan.edits)
 
 

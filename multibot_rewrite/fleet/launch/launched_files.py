@@ -135,7 +135,7 @@ def _with_files(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, li
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
-    """Return whether the launch makes one text of the file for all robots, line by line."""
+    """Return whether a launch fills a file line by line, all of it and with no word of the robot."""
     same = len(it.text.splitlines()) == len(text.splitlines())
     named = {word for word in spec.words if word in it.text and word not in text}
     return same and not named and _SUBSTITUTED not in it.text

@@ -138,7 +138,6 @@ def _switched(starts: Sequence[Start], own: Collection[str]) -> tuple[Start, ...
             yield Start("", "", name=host.full_name, components=(*several,), condition=condition)
 
     def there(it: Start) -> bool:
-        """Return whether an argument can turn on what is off, or it is on."""
         return not it.process.off or it.process.off in own
 
     return tuple(part for it in filter(there, starts) for part in loaded(with_condition(it)))

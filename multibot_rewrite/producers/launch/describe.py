@@ -246,7 +246,6 @@ def how_it_runs(action: Any, here: Visit) -> Process:
     told = getattr(action, "process_description", None) or action
 
     def own(name: str) -> Any:
-        """Return what an action was given for a name, by attribute."""
         given = getattr(action, f"_ExecuteLocal__{name}", None)
         return getattr(action, name, None) if given is None else given
 

@@ -74,7 +74,7 @@ def kept_file(path: str) -> str:
 
 
 def with_real_paths(it: Any) -> Any:
-    """Return a value whose texts name sources in place of links, and missing packages by name."""
+    """Return a value with ``real_paths`` of each of its texts, at any depth."""
     if isinstance(it, str):
         return real_paths(it)
     if isinstance(it, dict):

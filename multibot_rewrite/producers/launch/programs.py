@@ -61,7 +61,7 @@ def passes(it: LaunchedNode) -> bool:
 
 
 def may_be_off(it: LaunchedNode) -> bool:
-    """Return whether an argument may turn it on: no container, and nothing a fleet starts itself."""
+    """Return whether an argument may turn a node on: no container, none that a fleet starts itself."""
     own = is_spawner(it) or it.executable in _OWN or it.package in programs().simulators
     return not (own or it.executable.startswith("component_container"))
 

@@ -341,11 +341,11 @@ class Answers:
         self.asked: tuple[Question, ...] = ()
 
     def old(self, now: float) -> bool:
-        """Return whether it is time to ask again."""
+        """Return whether the nodes should be asked again."""
         return self._parameters is not None and now - self._asked >= AGAIN_SECONDS
 
     def update(self, seen: System, quiet: bool, now: float) -> bool:
-        """Ask the nodes of a quiet graph; return whether an answer is another than before.
+        """Ask the nodes of a quiet graph; return whether the answers changed.
 
         One that does not answer now keeps what it said before, until it leaves."""
         there = {node.name for node in seen.nodes}

@@ -221,7 +221,7 @@ def _part_under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
 
 
 def _parts_in_order(nodes: list[Any], part: _Part) -> Iterator[_Part]:
-    """Yield what is in a list of statements; behind one that may return, it may not be reached."""
+    """Yield the parts of some statements; those behind one that may return are conditional."""
     for it in nodes:
         if not isinstance(it, ast.AST):
             continue

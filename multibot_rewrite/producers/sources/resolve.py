@@ -119,7 +119,6 @@ def _text_of_name(names: Names, spot: Spot, name: str, without: str, depth: int)
     if name.startswith("@"):
 
         def braced_value(found: re.Match[str]) -> str:
-            """Return the value of a name in <>, to be part of another one."""
             return braced(text_in(names, spot, f"<{found[1]}>", "", depth))
 
         return f"<{_BRACED.sub(braced_value, name)}>"

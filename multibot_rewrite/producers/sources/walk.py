@@ -235,13 +235,11 @@ def _is_new_node(names: Names, text: str) -> bool:
 
 
 def _lookups(names: Names, spot: Spot, call: Call) -> Iterator[Looked]:
-    """Yield the frames that a call of ``lookupTransform`` names."""
     for it in call.given[:2]:
         yield Looked("looked up", text_in(names, spot, it), "", spot.asked, call.place, spot)
 
 
 def _sent_transforms(names: Names, spot: Spot, call: Call) -> Iterator[Sent]:
-    """Yield the messages that a broadcaster's call sends."""
     yield from (Sent(it.strip("<>"), spot.asked, call.place, spot) for it in call.given)
 
 

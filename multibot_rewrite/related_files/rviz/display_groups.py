@@ -136,7 +136,6 @@ def _group_of_robot(job: RvizJob, at: int) -> str:
         return one.block.start in job.own and not for_one_process(one)
 
     def made(one: RvizItem) -> Iterator[Splice]:
-        """Yield the splices that make a display the robot's."""
         yield from item_splices(document, one, robot, job.colours[at])
         # Each window needs its own title; a list of other displays no longer holds.
         name, visible = value(one.node, "Name"), value(one.node, "Visibility")

@@ -101,7 +101,6 @@ def rewrite_rviz(
     world = world or world_frame(naming)
 
     def make(upto: int) -> tuple[RvizText, ...]:
-        """Return the configs for the first ``upto`` robots."""
         some = robots[:upto] if not together or has_own_windows(config, robots[0]) else ()
         each = map(lambda *it: _window_for_one(config, *it), some, colours)
         return (

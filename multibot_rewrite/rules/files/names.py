@@ -249,7 +249,7 @@ def _robots_names(file: NamedFile) -> dict[str, str]:
 
 
 def _is_claimed(file: NamedFile, site: Site) -> bool:
-    """Return whether it is a frame or absolute topic of the robot; relative topics are common words."""
+    """Return whether a site names a frame or absolute topic of the robot; others are common words."""
     if site.in_key or not is_plain(site.text):
         return False
     if site.kind == "frame":

@@ -114,7 +114,7 @@ def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
 
 
 def _kind(words: Sequence[str]) -> Kind:
-    """Return the kind of a value that the words of a row describe."""
+    """Return the kind of a value from the words of a row, such as ``required`` or ``one:a|b``."""
     choices = next((it[4:].split("|") for it in words if it.startswith("one:")), [])
     types = [it for it in words if it in FINE]
     return Kind(

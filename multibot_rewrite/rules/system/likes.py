@@ -11,6 +11,7 @@ from multibot_rewrite.base.conventions import EVERYBODYS, SENT_FRAMES, chooses
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
+from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
@@ -252,7 +253,8 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
     rates = dict(sorted((it.topic, it.rate) for it in seen.system.heard))
     robots, flows = ({seen.robot(it) for it in rates if rates[it] >= least} for least in (0, 1e-9))
     kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in rates}
-    if seen.known.messages or any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
+    missed = any(it.code == _NOT_ALL for it in seen.system.environment.caveats)
+    if missed or seen.known.messages or is_recorded(seen.system):
         robots = set()
     # Those without a robot only where none has a name.
     sensors = dicts_by_key(

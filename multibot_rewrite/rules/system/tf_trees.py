@@ -253,7 +253,6 @@ def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
         return caused(f"{planned.node}, which sends {planned}, does not run{see}", place)
 
     def plain(parent: str, child: str, whose: str) -> tuple[str, ...]:
-        """Return parent and child without the robot's name."""
         return tuple(plan.of_frames.without_robot(it, whose) for it in (parent, child))
 
     wanted = plain(planned.parent, planned.child, robot.name)

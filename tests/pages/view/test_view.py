@@ -137,7 +137,7 @@ def test_names_of_a_file_do_not_reach_the_page_as_code(tmp_path: Path) -> None:
         (["nowhere.urdf"], "nowhere.urdf"),
         (["{folder}/fleet.yaml", "robot1"], "a fleet file has its own, leave out ROBOT"),
         (["{folder}/r.urdf", "a", "a"], "'a'"),
-        (["{folder}/r.urdf", "a:=b"], "NAME:=VALUE is for xacro"),
+        (["{folder}/r.urdf", "a:=b"], "is no xacro: leave out NAME:=VALUE"),
         (["{folder}/r.urdf", "-o", "{folder}/r.urdf"], "r.urdf"),
         (["{folder}/r.urdf", "--from", "{folder}/r.urdf"], "r.urdf"),
     ],

@@ -208,7 +208,6 @@ def _checkout_source(words: str) -> str:
 
 
 def _first_tags(sites: Iterable[SiteRow]) -> frozenset[str]:
-    """Return the tag with which each path begins."""
     paths = (split_path(site.path)[0] for site in sites if site.path[0] != "@")
     return frozenset(split_step(steps[0])[0] for steps in paths)
 

@@ -113,7 +113,6 @@ def _known(look_up: Callable[..., str], ask: Ask) -> Callable[..., str]:
     """Return a function that asks the parent for a variable, or else calls ``look_up``."""
 
     def known(name: str, *more: str, **named: str) -> str:
-        """Return the parent's variable, or what ``look_up`` says."""
         found = json.loads(ask(ENVIRONMENT, name))
         # A child has no variables: this one raises, or takes the default.
         return look_up(name, *more, **named) if found is None else str(found)

@@ -263,7 +263,6 @@ def numbers(document: Any, words: list[str]) -> array[int]:
     known: dict[str, int] = {}
 
     def number(word: str) -> int:
-        """Return the number of a word, added if it is new."""
         if word not in known:
             known[word] = len(words)
             words.append(word)

@@ -218,7 +218,7 @@ def _parameter(entity: Entity) -> Any:
 
 
 def _named_value(entity: Entity) -> tuple[Any, Any]:
-    """Return a parameter with its value, or with those below its name."""
+    """Return (name, value) of a parameter; the value is a dict where parameters are below it."""
     name = tuple(_substitutions(entity.take("name")))
     if inner := entity.all("param"):
         entity.check()
