@@ -149,7 +149,7 @@ def test_images_of_a_camera_begin_with_its_name(layout: str, shared: tuple[str, 
 
 
 def test_ros_1_gives_no_plugin_a_node_of_its_own() -> None:
-    """uuv_simulator has them for ROS 1 and Plankton for ROS 2, which reads the <ros> that is inserted."""
+    """uuv_simulator has them for ROS 1, Plankton for ROS 2, which reads the <ros> that is inserted."""
     text = DRIVE.replace("gazebo_ros_diff_drive", "gazebo_ros_control").format("x")
     text = text.replace("<ros><namespace>x</namespace></ros>", "")
     uuv = '<gazebo><plugin name="{0}" filename="libuuv_{0}_plugin.so">{1}</plugin></gazebo></robot>'
