@@ -228,7 +228,9 @@ def opened(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str
         it = split_opens(word)
         if not it.path or (it.when and not holds(host, it.when)):
             continue
-        values = [value for value in given_at(host, it.path) if value]
+        # A camera puts its sensor's name in front of its files (gz-sensors CameraSensor.cc, SaveImage).
+        own = f"/{host.get('name', '')}" if host.tag == "sensor" and it.kind == FILE else ""
+        values = [f"{value}{own}" for value in given_at(host, it.path) if value]
         for value in values or ([it.default] if it.default else []):
             # The first device of its kind has the number 0.
             if value not in NOWHERE or (it.kind == DEVICE and value == "0"):
