@@ -44,6 +44,7 @@ def _join(options: argparse.Namespace) -> int:
         trust=options.trust,
         distro=options.distro or "",
         samples=samples,
+        output=options.output if goes_to_file(options) else "",
     )
     _deliver(options, made, parts)
     for it in (*map(str, made.findings), *made.notes):

@@ -93,7 +93,8 @@ def run(options: argparse.Namespace) -> int:
 
         text = baseline_text(findings, options.write_baseline)
         write_files(options, [(options.write_baseline, text)])
-        note(options, f"{options.write_baseline}: {_counted(findings)} are known from now on")
+        counted = in_words(counts(findings)) or "no findings"
+        note(options, f"{options.write_baseline}: {counted} are known from now on")
         return DONE
     return _conclude(options, config, paths, findings, why)
 
@@ -240,11 +241,8 @@ def _summary(
     fixable = sum(bool(it.edits) for it in findings)
     hint = f"; --fix fixes {fixable}" if fixable and not options.fix else ""
     old = f"; {stale} in the baseline are gone" if stale else ""
-    return f"{files}{changed}: {_counted(findings)}{hint}{old}"
-
-
-def _counted(findings: Sequence[Finding]) -> str:
-    return in_words(counts(findings)) or "no findings"
+    counted = in_words(counts(findings)) or "no findings"
+    return f"{files}{changed}: {counted}{hint}{old}"
 
 
 def check_use(options: argparse.Namespace) -> None:

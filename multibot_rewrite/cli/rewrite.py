@@ -35,9 +35,9 @@ from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.description.checks.meeting import given, not_verified
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.description.readback.meeting import NUMBERED
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import Source
-from multibot_rewrite.description.sources.whole import read_whole
 
 # What the summary calls a kind whose own word says little; the others are their own word.
 WORDS = {"stem": "topic prefix"}

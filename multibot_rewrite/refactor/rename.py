@@ -7,6 +7,7 @@ them again: nothing else may have changed."""
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -28,8 +29,9 @@ from multibot_rewrite.description.sources.trace import WrittenAt
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.library.one_file import names_in_file
+from multibot_rewrite.refactor.launch_argument import literal_parameters
 from multibot_rewrite.refactor.launches import respelled, starts_of
-from multibot_rewrite.refactor.named_elsewhere import files_below
+from multibot_rewrite.refactor.named_elsewhere import mentions
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,
@@ -39,6 +41,7 @@ from multibot_rewrite.refactor.package import (
     read_text,
     texts_of,
 )
+from multibot_rewrite.refactor.placing import Left
 from multibot_rewrite.refactor.source_edits import (
     Composed,
     SourceEdit,
@@ -62,20 +65,18 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "topic": ("topic", "subtopic"),
 }
 _NAME = re.compile(r"[^\s<>&\"'{}$]+")
-_TEXTS = (".py", ".yaml", ".yml", ".xml", ".rviz", ".lua", ".cpp", ".hpp", ".h", ".xacro", ".srdf")
-MOST_MENTIONS = 50
 
 
 class Renaming(NamedTuple):
     """What a rename changes: ``before`` and ``after`` are the bytes of files, by path.
 
-    ``places`` is their number; ``mentions`` are lines of other files that have the name and
-    stay, as ``file:line``; ``unread`` are descriptions that could not be read, with the reason."""
+    ``places`` is their number; ``left`` are lines that still have the name, and why; ``unread``
+    are descriptions that could not be read, with the reason."""
 
     before: Mapping[str, bytes]
     after: Mapping[str, bytes]
     places: int
-    mentions: tuple[str, ...]
+    left: tuple[Left, ...]
     unread: Mapping[str, str]
 
 
@@ -153,7 +154,8 @@ def _renaming_of(symbol: _Symbol, package: Package, folder: str, how: Expanding)
     beside = dict(_changed_related_files(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
-    found = tuple(_mention_lines(package, symbol.old, {os.path.realpath(it) for it in after}))
+    changed = {os.path.realpath(path): data for path, data in after.items()}
+    found = tuple(mentions(package.found.folders, symbol.old, symbol.new, changed))
     after = as_named(after, package.descriptions)
     before = {path: read_bytes(path) for path in after}
     return Renaming(before, after, places, found, package.unread)
@@ -222,6 +224,24 @@ def _changed_related_files(
         if os.path.realpath(path) not in after:
             made = respelled(file, data, starts, len(symbol.old), symbol.new)
             yield path, (made, len(starts))
+    urdf = next(it for it in package.descriptions if changes[it.path]).inventory.document.source
+    old, new = symbol.old.encode(), symbol.new.encode()
+    for path, data in ((it, read_bytes(it)) for it in package.found.launch):
+        with suppress(MultibotError):
+            slots = literal_parameters(path, data, symbol.old) if old in data else ()
+            own = (start for start, node, key in slots if _is_named(node, key, symbol, urdf))
+            edits = [SourceEdit(path, start, start + len(old), new) for start in own]
+            if edits:
+                yield path, (edited({path: data}, edits)[path], len(edits))
+
+
+def _is_named(node: str, key: str, symbol: _Symbol, urdf: bytes) -> bool:
+    """Return whether a parameter file with the node and the key would have the symbol there."""
+    text = json.dumps({node: {"ros__parameters": {key: symbol.old}}}).encode()
+    with suppress(MultibotError):
+        file = names_in_file(text, "launch.yaml", urdf)
+        return any(starts_of(file, (symbol.old,), KINDS[symbol.kind]))
+    return False
 
 
 def _files_with(
@@ -248,15 +268,6 @@ def _related_files(
         if name.encode() in data:
             with suppress(MultibotError):
                 yield path, data, names_in_file(data, path, described)
-
-
-def _mention_lines(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:
-    """Yield lines that have the name, of files that do not change."""
-    word = re.compile(rb"(?<![\w/])" + re.escape(old.encode()) + rb"(?![\w/])")
-    for path in chain.from_iterable(files_below(it, _TEXTS) for it in package.found.folders):
-        if os.path.realpath(path) not in changed:
-            data = read_bytes(path)
-            yield from (f"{path}:{locate(data, it.start())[0]}" for it in word.finditer(data))
 
 
 class Place(NamedTuple):

@@ -151,21 +151,19 @@ def _merged_environment(
     around = [look.snapshot.environment for look in looks]
     asked = around[0]
     peers = dict.fromkeys(peer for one in around for peer in one.static_peers)
+    every = zip(*((it.range, it.rmw, it.discovery_server) for it in around), strict=True)
+    range_, rmw, server = (", ".join(dict.fromkeys(filter(None, it))) for it in every)
     return asked._replace(
-        range=_joined_once(one.range for one in around),
+        range=range_,
         static_peers=tuple(peers),
-        rmw=_joined_once(one.rmw for one in around),
-        discovery_server=_joined_once(one.discovery_server for one in around),
+        rmw=rmw,
+        discovery_server=server,
         super_client=all(one.super_client for one in around),
         participants=participants(endpoints),
         settled=max((one.settled for one in around), key=WORST_LAST.index),
         seconds=max(one.seconds for one in around),
         caveats=(*_merged_caveats(looks), *unfinished(nodes, endpoints, asked.discovery_server)),
     )
-
-
-def _joined_once(words: Iterable[str]) -> str:
-    return ", ".join(dict.fromkeys(filter(None, words)))
 
 
 def _merged_caveats(looks: Sequence[Look]) -> Iterator[Caveat]:

@@ -15,8 +15,8 @@ from multibot_rewrite.description.readback.active import (
     PLUGIN,
     ActivePart,
     active_parts,
-    is_loaded,
     plugin_name,
+    why_not_loaded,
 )
 from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, PluginDefinition
 from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
@@ -41,16 +41,12 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     if old and not lacks_classic(release, inventory.document.source):
         old = None
     for plugin in root.iter(PLUGIN):
-        if not is_loaded(plugin):
+        if hint := why_not_loaded(plugin, tree.definitions):
             message = f"nothing loads the <plugin> {plugin_name(plugin)!r} here"
-            yield Problem(plugin, message, None, "move it into a <gazebo>", (), NOT_LOADED)
+            yield Problem(plugin, message, None, hint, (), NOT_LOADED)
     by_ros = _by_ros(parts, tree.definitions)
     for part in parts:
-        if part.kind == PLUGIN and not {"filename", "type"} & {*part.element.attrib}:
-            # sdformat plugin.sdf: a filename is required.
-            message = f"nothing loads the <plugin> {part.name!r}: it has no library"
-            yield Problem(part.element, message, None, "write its filename=", (), NOT_LOADED)
-        elif not part.is_known:
+        if not part.is_known:
             message, hint = _message_and_hint(part, tree.definitions, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
         elif part is old:

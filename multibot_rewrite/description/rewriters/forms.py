@@ -241,6 +241,7 @@ def nothing(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...
 
 FORMS: dict[str, Form] = {
     "whole": whole,
+    "own": whole,
     "list": listed,
     "scoped": of_names(scoped),
     "words": words,

@@ -86,8 +86,8 @@ def _read_once(order: LaunchOrder) -> LaunchGraph:
     whole = _with_full_path(order)
     try:
         graph = once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
-    except InputError:
-        graph = launch_graph(order)
+    except InputError as error:
+        raise InputError(str(error).replace(whole.file, order.file, 1)) from error
     if why := why_not(graph):
         raise InputError(f"{order.file}: the launch file cannot be read: {why}")
     return graph

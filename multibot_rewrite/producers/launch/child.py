@@ -114,7 +114,7 @@ def _parameters(it: Mapping[str, Any], place: Place) -> Iterator[ParameterText]:
 
 _MODULE = "multibot_rewrite.producers.launch"
 # Of one launch file.
-SECONDS, MOST = 120, 1000
+SECONDS, MOST = 60, 1000
 # A launch file may load the fleet that names it.
 _INSIDE = "MULTIBOT_READS_LAUNCH"
 

@@ -115,14 +115,11 @@ def _is_of_its_tree(seen: Index, _: Tree, edge: Edge) -> bool:
 
 def _is_of_nobody(seen: Index, tree: Tree, edge: Edge) -> bool:
     """Return whether no robot's node has sent it, and it is not a copy by a known node."""
-    trees = _trees_of(seen, seen.frame_robot(edge.child))
-    copied = any(edge.child in by_child(seen)[it.topic] for it in trees) and edge.publishers
+    robot = seen.frame_robot(edge.child)
+    trees = (it.topic for it in seen.trees if seen.robot(it.topic) == robot)
+    copied = any(edge.child in by_child(seen)[it] for it in trees) and edge.publishers
     sees = seen.frame_robot(edge.parent) == seen.robot(tree.topic)
     return not (copied or sees or any(map(seen.robot, edge.publishers or tree.senders)))
-
-
-def _trees_of(seen: Index, robot: str) -> Iterator[Tree]:
-    return (it for it in seen.trees if seen.robot(it.topic) == robot)
 
 
 def _is_relayed(seen: Index, tree: Tree, robot: str) -> bool:
@@ -130,7 +127,8 @@ def _is_relayed(seen: Index, tree: Tree, robot: str) -> bool:
     plan, topics = seen.expected, (tree.topic, static_topic(tree.topic))
     own = plan.own.get(robot, ()) if plan else ()
     planned = plan.by_key if plan else ()
-    heard = (node for it in _trees_of(seen, robot) for node in it.listeners)
+    own_trees = (it for it in seen.trees if seen.robot(it.topic) == robot)
+    heard = (node for it in own_trees for node in it.listeners)
     keys = ((node, TOPIC, PUBLISHES, it) for node in own for it in topics)
     return any(it in planned for it in keys) or any(node in tree.senders for node in heard)
 

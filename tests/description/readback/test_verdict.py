@@ -116,10 +116,38 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
             DRIVE.format("{name}"),
             ("1 command shared by all robots", "1 node shared by all robots"),
         ),
+        # sdformat plugin.sdf: without a filename nothing is loaded.
+        (LIDAR.format("x").replace("<sensor", '<plugin name="gazebo_ros_control"/><sensor'), ()),
     ],
 )
 def test_a_rewrite_says_why_it_is_not_proved(text: str, why: tuple[str, ...]) -> None:
     assert rewrite(text, "robot1", layout="tf-per-robot").not_verified == why
+
+
+@pytest.mark.parametrize(
+    ("distro", "why"), [("", ("1 topic shared by all robots",)), ("humble", ())]
+)
+def test_ros_2_loads_no_plugin_that_gazebo_ros_pkgs_had_for_ros_1(
+    distro: str, why: tuple[str, ...]
+) -> None:
+    """The branch ros2 of gazebo_ros_pkgs has no gazebo_ros_skid_steer_drive; ROS 1's sends on /tf."""
+    text = DRIVE.replace("gazebo_ros_diff", "gazebo_ros_skid_steer")
+    text = text.replace("<ros><namespace>{}</namespace></ros>", "<broadcastTF>true</broadcastTF>")
+    made = rewrite(text, "robot1", layout="tf-per-robot", distro=distro)
+    assert made.not_verified == why
+    assert ("MB112" in {it.code for it in made.findings}) == bool(distro)
+
+
+def test_a_sensor_below_its_own_model_is_no_other_robots() -> None:
+    """kobuki's plugin looks for the bumper in the world, and for world::model::base_footprint::imu
+    (kobuki_gazebo_plugins gazebo_ros_kobuki_loads.cpp)."""
+    names = "<imu_name>imu</imu_name><bumper_name>bumper</bumper_name>"
+    sensors = '<sensor name="imu" type="imu"/><sensor name="bumper" type="contact"/>'
+    text = DRIVE.replace("gazebo_ros_diff_drive", "gazebo_ros_kobuki").format("x")
+    text = text.replace("<ros><namespace>x</namespace></ros>", names)
+    text = text.replace("</robot>", f'<gazebo reference="a">{sensors}</gazebo></robot>')
+    found = rewrite(text, "robot1", layout="frame-prefix").findings
+    assert ["'bumper'" in it.message for it in found if it.code == "MB425"] == [True]
 
 
 @pytest.mark.more
