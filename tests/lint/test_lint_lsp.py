@@ -189,6 +189,8 @@ def test_a_fault_of_an_included_file_is_shown_in_it_as_it_is_open(
     editor.save(part)
     assert "MB202" in codes(editor.until(whole, "MB202"))
     assert {it.range.start.line for it in editor.shown[part.as_uri()]} >= {2}
+    # Its findings are explained in it, not at the same line of this file.
+    assert editor.hover(whole, whole.read_text(), "fixed") == ""
     editor.close(whole)
     editor.close(part)
 
