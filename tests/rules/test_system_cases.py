@@ -944,3 +944,18 @@ def test_velocities_of_nav2_that_no_input_of_the_mux_reads() -> None:
     assert found.endswith("which no node reads; /robot1/twist_mux reads /robot1/cmd_vel")
     by_hand = [it for it in lines if "/robot1/cmd_vel " not in it]
     assert not [it for it in said(*by_hand) if "/robot1/twist_mux reads" in it]
+
+
+def test_two_nodes_that_feed_each_other_and_a_part_in_millimetres() -> None:
+    ends = (("a", "/x", "/y"), ("b", "/y", "/x"))
+    lines = [
+        f"/{node} {does} {topic} {SCAN}"
+        for node, read, sent in ends
+        for does, topic in (("subscribes", read), ("publishes", sent))
+    ]
+    assert [it for it in said(*lines) if " makes " in it] == [
+        "MG329 error /a: makes /y from /x, and /b makes /x from /y"
+    ]
+    far = "running: transform base_link -> lidar_link on /tf_static at 150 0 200 by /camera_tf"
+    (hint,) = (it.hint for it in judge(read_system(far)) if it.code == "MG418")
+    assert hint == "write metres in the files that /camera_tf reads"
