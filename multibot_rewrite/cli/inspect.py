@@ -44,9 +44,9 @@ from multibot_rewrite.description.rewriters.plugin_definitions import (
 )
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import is_xacro
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.knowledge.declared import declared_by, plugin_bases

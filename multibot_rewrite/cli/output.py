@@ -36,6 +36,8 @@ TAKE_FLEETS = ("plan", "rehearse", "view")
 _T = TypeVar("_T")
 _PAINT = {b"+": b"\033[32m", b"-": b"\033[31m", b"@": b"\033[36m"}
 _PLAIN = b"\033[0m"
+# In a text of more lines, those that are often there, as ``</joint>``, may be shown as changed.
+_COMPARED_EXACTLY = 1500
 # To the start of the line, which is emptied.
 _CLEARED = "\r\033[K"
 
@@ -100,14 +102,14 @@ def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]])
     """Write all (path, data) or none; ``--verbose`` names them."""
     written: list[str] = []
 
-    def noted() -> Iterable[tuple[str, bytes]]:
+    def noting_paths() -> Iterable[tuple[str, bytes]]:
         for path, data in items:
             written.append(path)
             yield path, data
 
     from multibot_rewrite.cli.files import write_all  # most commands of a lint write none
 
-    write_all(noted())
+    write_all(noting_paths())
     for path in written:
         detail(options, f"wrote {path}")
 
@@ -226,12 +228,24 @@ def detail(options: argparse.Namespace, text: str) -> None:
 
 
 def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False) -> bytes:
-    """Return a unified diff that patch reads."""
-    from difflib import diff_bytes, unified_diff
+    """Return a unified diff that patch reads; empty if nothing is different."""
+    if old == new:
+        return b""
+    from difflib import SequenceMatcher
 
     # Unlike splitlines, this ends lines at line feeds only, as patch does.
     before, after = io.BytesIO(old).readlines(), io.BytesIO(new).readlines()
-    lines = diff_bytes(unified_diff, before, after, _escaped_path(name), _escaped_path(new_name))
+    lines = [b"--- %b\n" % _escaped_path(name), b"+++ %b\n" % _escaped_path(new_name)]
+    matcher = SequenceMatcher(None, before, after, len(after) > _COMPARED_EXACTLY)
+    for group in matcher.get_grouped_opcodes():
+        (_, first, _, new_first, _), (_, _, last, _, new_last) = group[0], group[-1]
+        old_lines = first + (last > first), last - first
+        new_lines = new_first + (new_last > new_first), new_last - new_first
+        lines.append(b"@@ -%d,%d +%d,%d @@\n" % (*old_lines, *new_lines))
+        for tag, start, end, new_start, new_end in group:
+            mark = b" " if tag == "equal" else b"-"
+            lines += (mark + line for line in before[start:end])
+            lines += (b"+" + line for line in after[new_start:new_end] if tag != "equal")
     cut_short = b"\n\\ No newline at end of file\n"
     whole = (line if line.endswith(b"\n") else line + cut_short for line in lines)
     return b"".join(map(_painted_line, whole) if colour else whole)

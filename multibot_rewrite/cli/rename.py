@@ -7,10 +7,10 @@ import argparse
 
 from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
-from multibot_rewrite.cli.output import deliver_changed, note, note_unread, verified_words
+from multibot_rewrite.cli.output import deliver_changed, detail, note, note_unread, verified_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
-from multibot_rewrite.refactor.rename import MOST_MENTIONS, Renaming, rename_symbol
+from multibot_rewrite.refactor.rename import Renaming, rename_symbol
 
 
 def run(options: argparse.Namespace) -> int:
@@ -37,7 +37,9 @@ def _print_result(options: argparse.Namespace, made: Renaming) -> None:
         f"{options.kind} {options.old} -> {options.new}: {where}; {verified_words(made.unread)}",
     )
     note_unread(options, made.unread)
-    if left := made.mentions:
+    if left := made.left:
         lines = f"{plural(len(left), 'line')} with {options.old!r}"
-        most = MOST_MENTIONS if options.verbose else SEVERAL
-        note(options, f"left as they are: {lines}: {shorten(left, most)}")
+        shown = shorten((it.place for it in left), SEVERAL)
+        note(options, f"left as they are: {lines}: {shown}")
+        for mention in left:
+            detail(options, f"  {mention.place}: {mention.why}")

@@ -72,9 +72,10 @@ def known_names() -> Mapping[str, Any]:
 class Found(NamedTuple):
     """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
 
-    ``descriptions`` are those that were named, if any were; ``every`` are all that are there.
-    ``meant`` are related files that were named, ``follows`` those with the description that was
-    named before each, ``named`` is the launch file that was."""
+    ``descriptions`` are those that were named, if any were; ``every`` are all that are there,
+    ``parts`` are those that another one includes. ``meant`` are related files that were named,
+    ``follows`` those with the description that was named before each, ``named`` is the launch file
+    that was."""
 
     descriptions: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
@@ -87,6 +88,7 @@ class Found(NamedTuple):
     worlds: tuple[str, ...] = ()
     folders: tuple[str, ...] = ()
     every: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
     meant: tuple[str, ...] = ()
     follows: tuple[tuple[str, str], ...] = ()
     named: tuple[LaunchOrder, ...] = ()
@@ -226,10 +228,11 @@ def _can_be_named(path: str) -> bool:
 
 
 def _with_kinds(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[str, str]]:
-    """Yield each path with its kind; files that are only included have none."""
+    """Yield each path with its kind; files that are only included are parts."""
     kinds: dict[str, str] = {}
 
     def texts() -> Iterator[tuple[str, bytes]]:
+        """Yield path and bytes of each file, and note its kind."""
         for path in paths:
             data = data_of_file(path)
             kinds[path] = _field_of(path, data)
@@ -241,9 +244,8 @@ def _with_kinds(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tupl
     read = named or read_any(launch)
     loaded = {one.file for it in read for one in it.graph.read}
     parts = {it for it in parts if os.path.realpath(it) not in loaded}
-    yield from (
-        (it, kind) for it, kind in kinds.items() if kind != "descriptions" or it not in parts
-    )
+    for it, kind in kinds.items():
+        yield it, "parts" if kind == "descriptions" and it in parts else kind
 
 
 def _rewritten_files(paths: Iterable[str]) -> Iterator[str]:

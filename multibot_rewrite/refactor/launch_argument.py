@@ -10,10 +10,12 @@ import ast
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator
+from contextlib import suppress
 from itertools import accumulate, chain
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.description.steps.document import read_document, value_slot
 from multibot_rewrite.refactor.placing import Left
 from multibot_rewrite.refactor.source_edits import SourceEdit, edited
 
@@ -35,6 +37,7 @@ OF_ROBOT = (
     "controller_manager",
 )
 _NODE = rb"<node\b[^<>]*?\bpkg=\"(?:%s)\"" % "|".join(OF_ROBOT).encode()
+_NODES = ("Node", "LifecycleNode", "ComposableNode")
 _Placed = ast.expr | ast.stmt | ast.keyword
 # Spawners of simulators read the topic that follows: in the namespace, if it is relative.
 _TOPIC = "robot_description"
@@ -72,7 +75,8 @@ def with_argument(
 
     It fills in those ``parameters`` that it only gives to nodes, and puts what belongs to the
     description into the namespace ``space``. All are names of files."""
-    if not any(name.encode() in source for name in descriptions):
+    handed = re.search(rb"\b%s:=" % argument.encode(), source)
+    if handed or not any(name.encode() in source for name in descriptions):
         return LaunchEdit(None, ())
     if space and not space.of_xacro and not any(it.encode() in source for it in OF_ROBOT):
         space = None
@@ -139,12 +143,10 @@ class _Text(NamedTuple):
 def _python_edit(
     path: str, source: bytes, argument: str, parameters: Collection[str], space: Space | None
 ) -> LaunchEdit:
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
+    it = _python_text(path, source)
+    if not it.tree.body:
         return LaunchEdit(None, (Left(path, "it is no Python"),))
-    lines = list(accumulate(map(len, source.splitlines(keepends=True)), initial=0))
-    it = _Text(path, source, tree, lines)
+    tree = it.tree
     every, of_xacro = _declared_and_given(argument, space)
     # ``["xacro ", ...]`` or ``[FindExecutable(name="xacro"), " ", ...]``.
     called = (it for it in _lists_of(tree, "Command") if it.elts)
@@ -167,6 +169,41 @@ def _python_edit(
     edits += _import_edits(it, [name for name in _IMPORTS if files or name != "ParameterFile"])
     data = edited({path: source}, edits)[path]
     return LaunchEdit(data, (), tuple(files), space is not None)
+
+
+def literal_parameters(path: str, data: bytes, value: str) -> Iterator[tuple[int, str, str]]:
+    """Yield where parameters with a literal value are in a launch file, with the node and the key."""
+    if path.endswith(".xml"):
+        document = read_document(data, path)
+        for element, start in zip(document.elements, document.starts, strict=True):
+            node, slot = element.getparent(), value_slot(data, start, "value", value)
+            if slot and node is not None and (node.tag, element.tag) == ("node", "param"):
+                yield slot[0], node.get("name", node.get("exec", "")), element.get("name", "")
+        return
+    it = _python_text(path, data)
+    for call in ast.walk(it.tree):
+        if not isinstance(call, ast.Call) or _called_name(call) not in _NODES:
+            continue
+        given = {one.arg: one.value for one in call.keywords}
+        names = (given.get(word) for word in ("name", "executable", "plugin"))
+        node_name = next((str(one.value) for one in names if isinstance(one, ast.Constant)), "")
+        inside = ast.walk(given.get("parameters", ast.Tuple([])))
+        tables = [one for one in inside if isinstance(one, ast.Dict)]
+        pairs = (zip(one.keys, one.values, strict=True) for one in tables)
+        for key, item in chain.from_iterable(pairs):
+            start, end = it.begin(item) + 1, it.end(item) - 1
+            is_literal = isinstance(item, ast.Constant) and item.value == value
+            if isinstance(key, ast.Constant) and is_literal and data[start:end] == value.encode():
+                yield start, node_name, str(key.value)
+
+
+def _python_text(path: str, source: bytes) -> _Text:
+    """Return a launch file in Python; its tree is empty if it is none."""
+    tree = ast.Module([], [])
+    with suppress(SyntaxError, ValueError):
+        tree = ast.parse(source)
+    lines = accumulate(map(len, source.splitlines(keepends=True)), initial=0)
+    return _Text(path, source, tree, list(lines))
 
 
 def _namespace_edits(it: _Text, space: str) -> Iterator[SourceEdit]:

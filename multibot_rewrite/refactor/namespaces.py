@@ -2,19 +2,18 @@
 """A description package gets an argument for a ROS namespace, in addition to that for its prefix.
 
 What a rewrite below a namespace changes in plugins and sensors is asked of the rewrite: namespaces,
-absolute names, and elements that are not written. Without a namespace nothing changes. Proved by
+absolute names, and elements that are not written. Without a namespace nothing changes. Verified by
 expansion: with one the description is what the rewrite makes of it."""
 
 import os
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import zip_longest
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import PREFIX, ROS_KINDS, Naming, make_naming
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import in_one_line
@@ -22,18 +21,21 @@ from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import Template
-from multibot_rewrite.description.steps.document import read_document, tag_end
+from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.description.steps.inserted import elements_of, lead_of
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
-from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, change_of, place
+from multibot_rewrite.refactor.source_edits import (
+    SourceEdit,
+    ValueEdit,
+    change_of,
+    first_difference,
+    place,
+)
+from multibot_rewrite.refactor.xacro_sources import SPACES, Sources, declared
 
 # No robot is called so: a description with robot1_ before its names can be tried with it.
 TRIED_SPACE = "ns1"
-# What the new argument may be called.
-NAMES = ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
-SPACES = ("namespace", "robot_namespace", "ros_namespace")
-_SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
 class Spaced(NamedTuple):
@@ -69,11 +71,12 @@ def spacing() -> Naming:
 def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: Tree) -> Namespaced:
     """Return the edits of the sources ``texts``, by their real paths."""
     every, left = _spaced_urdfs(found, tree)
-    argument = free_name(found, SPACES)
+    sources = Sources(texts)
+    argument = sources.free_name(SPACES, sources.hiding)
     made = placed(
         [it.found for it in every],
         [list(_namespace_edits(it.template)) for it in every],
-        lambda change: _conditional_namespace(change, argument),
+        lambda _, change: _conditional_namespace(change, argument),
     )
     edits, left = list(made.edits), [*left, *made.left]
     for (file, start), wanted in _added_by_spot(every).items():
@@ -84,8 +87,8 @@ def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: T
             edits += _element_edits(file, texts[file], start, next(iter(wanted)), argument)
     if not edits:
         return Namespaced("", (), (), tuple(left))
-    own = [it.found for it in every]
-    edits += declared(own, texts, {it.file for it in edits}, argument)
+    tops = {os.path.realpath(it.found.path) for it in every}
+    edits += [*declared(texts, edits, tops, argument, True)]
     return Namespaced(argument, tuple(edits), tuple(every), tuple(left))
 
 
@@ -146,28 +149,16 @@ def _namespace_fault(
             wanted = next(pipeline.render(it.template, [TRIED_SPACE], again=True))
     except InputError as error:
         return str(error)
-    both = zip_longest(
-        _readable_elements(made), _readable_elements(wanted), fillvalue=(0, "/robot", (), "")
-    )
-    other = next((one for one, two in both if one != two), None)
-    if other is None:
-        return ""
-    _, tag, values, text = other
-    words = " ".join((tag, *(f'{name}="{value}"' for name, value in values)))
-    return f"with {argument}:={TRIED_SPACE} it has <{words}>{text}"
+    other = first_difference(_as_read(made), _as_read(wanted))
+    return f"with {argument}:={TRIED_SPACE} it has {other}" if other else ""
 
 
-def _readable_elements(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
-    """Return depth, tag, attributes and text of each element: all that its readers see."""
-    return [
-        (
-            sum(1 for _ in it.iterancestors()),
-            str(it.tag),
-            tuple(sorted((str(name), str(value)) for name, value in it.attrib.items())),
-            "".join((it.text or "", *(one.tail or "" for one in it))).strip(),
-        )
-        for it in read_xml(data, "").iter("*")
-    ]
+def _as_read(data: bytes) -> bytes:
+    """Return a description as its readers see it: without comments, an element a line."""
+    root = read_xml(data, "")
+    etree.strip_tags(root, etree.Comment)
+    etree.indent(root)
+    return etree.tostring(root)
 
 
 def _namespace_edits(template: Template) -> Iterator[ValueEdit]:
@@ -178,12 +169,12 @@ def _namespace_edits(template: Template) -> Iterator[ValueEdit]:
             yield change_of(document, claim, at, at, f"{before}{TRIED_SPACE}{after}")
 
 
-def _conditional_namespace(change: ValueEdit, argument: str) -> bytes:
+def _conditional_namespace(change: ValueEdit, argument: str) -> str:
     """Return ``${...}`` with the new name of a change, which is empty without a namespace."""
     before, after = change.new.split(TRIED_SPACE)
     words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)
     test = f"{argument} and " if len(words) > 1 else ""
-    return f"${{{test}{' + '.join(words)}}}".encode()
+    return f"${{{test}{' + '.join(words)}}}"
 
 
 def _added_by_spot(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
@@ -230,47 +221,3 @@ def _element_edits(
         yield SourceEdit(file, end - 2, end, f">{text}</{tag}>".encode())
     else:
         yield SourceEdit(file, end, end, text.encode())
-
-
-def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str:
-    """Return a name that no argument, property or parameter of a macro has."""
-    taken: set[str] = set()
-    sources = {file: data for it in found for file, data in it.sources.items()}
-    # YAML that an expression loads is among them.
-    for file, data in ((file, data) for file, data in sources.items() if b"<robot" in data):
-        for element in read_document(data, file).root.iter("{*}arg", "{*}property", "{*}macro"):
-            words = element.get("params", "").replace(":=", " ").replace("=", " ").split()
-            taken |= {element.get("name", ""), *words}
-    free = next((name for name in names if name not in taken), None)
-    if free is None:
-        raise UsageError(f"{', '.join(names)} are all in use in it: rename one of them")
-    return free
-
-
-def declared(
-    found: Sequence[Description],
-    texts: Mapping[str, bytes],
-    changed: Collection[str],
-    argument: str,
-) -> Iterator[SourceEdit]:
-    """Yield the argument and property of descriptions, and the property of ``changed`` files."""
-    # Unread packages include these, too. Source: xacro README (``default`` of a property).
-    own = {os.path.realpath(it.path) for it in found}
-    argued = f'\n  <xacro:arg name="{argument}" default=""/>'
-    value = f'\n  <xacro:property name="{argument}" value="$(arg {argument})"/>'
-    for path in own:
-        yield from _first_in_root(path, texts[path], argued + value)
-    for path in {*changed} - own:
-        if b"<robot" in texts[path]:
-            text = f'\n  <xacro:property name="{argument}" default=""/>'
-            yield from _first_in_root(path, texts[path], text)
-
-
-def _first_in_root(path: str, source: bytes, text: str) -> Iterator[SourceEdit]:
-    """Yield the edits that put a text first in the root element."""
-    start = read_document(source, path).starts[0]
-    end = tag_end(source, start)
-    if b"xmlns:xacro" not in source[start:end]:
-        at = start + len(b"<robot")
-        yield SourceEdit(path, at, at, _SPACE)
-    yield SourceEdit(path, end, end, text.encode())

@@ -7,7 +7,7 @@ whatever name a property or a macro has it. Several at a time are not tried."""
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import redirect_stderr
+from contextlib import redirect_stderr, suppress
 from io import StringIO
 from itertools import chain, islice
 from types import MappingProxyType
@@ -15,10 +15,14 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.description.joining.part import reasons_against_joining
+from multibot_rewrite.description.reports.xacro_arguments import declared_in
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
+from multibot_rewrite.description.sources.known_arguments import known_arguments
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
@@ -63,7 +67,7 @@ class Package(NamedTuple):
 
 
 def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
-    """Read every description in a folder; raises UsageError for one that is not there."""
+    """Read every description in a folder; raises UsageError for a folder or argument not there."""
     found = search([folder])
     texts: dict[str, tuple[bytes, Expansion | None]] = {}
     unread: dict[str, str] = {}
@@ -79,11 +83,26 @@ def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
             made.append(Description(path, inventory_of(data, path, tree, urdfs), read))
         except InputError as error:
             unread[path] = str(error)
+    made += _included(found.parts, tree, how)
+    known = known_arguments(data for it in made for data in it.sources.values())
+    if (lacking := known.lacks(how.arguments)) and made and not unread:
+        near = did_you_mean_one_of(lacking[0], known.names) or "leave it out"
+        raise UsageError(f"{folder}: no xacro has the argument {lacking[0]!r}; {near}")
     return Package(found, tuple(made), unread)
 
 
+def _included(paths: Iterable[str], tree: Tree, how: Expanding) -> Iterator[Description]:
+    """Yield the files that others include and that are complete robots themselves."""
+    for path in paths:
+        with suppress(InputError):
+            data, read = read_text(path, how)
+            inventory = inventory_of(data, path, tree)
+            if inventory.declared.get("joint") and not any(reasons_against_joining(inventory)):
+                yield Description(path, inventory, read)
+
+
 def read_text(
-    path: str, how: Expanding, texts: Mapping[str, bytes] | None = None
+    path: str, how: Expanding, texts: Mapping[str, bytes] | None = None, in_pieces: bool = True
 ) -> tuple[bytes, Expansion | None]:
     """Return the text of a description, with ``texts`` of changed files by real path."""
     # Raises InputError.
@@ -93,7 +112,7 @@ def read_text(
         return data, None
     # What xacro warns about is not said here.
     with redirect_stderr(StringIO()):
-        read = expand_traced(path, data, how.arguments, None, how.reach, True, known)
+        read = expand_traced(path, data, how.arguments, None, how.reach, in_pieces, known)
     return read.data, read
 
 
@@ -165,12 +184,7 @@ def _other_values(
     words = set(
         chain.from_iterable(_compared_words(str(it)) for one in elements for it in one.values())
     )
-    # The arguments with their defaults; the first one counts.
-    defaults: dict[str, str] = {}
-    for it in elements:
-        if str(it.tag).endswith("xacro}arg"):
-            defaults.setdefault(it.get("name", ""), it.get("default", ""))
-    for name, default in defaults.items():
+    for name, default in declared_in(sources).items():
         if name in given:
             continue
         names = [name]

@@ -16,7 +16,7 @@ from lxml import etree
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.description.sources.expand import Expansion
 from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece
-from multibot_rewrite.description.steps.document import attribute_slots, tag_end
+from multibot_rewrite.description.steps.document import tag_end, written_slot
 from multibot_rewrite.refactor.package import Description
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, place_of
 
@@ -55,7 +55,7 @@ class _Name(NamedTuple):
 def placed(
     found: Sequence[Description],
     changes: Sequence[Sequence[ValueEdit]],
-    written: Callable[[ValueEdit], bytes],
+    written: Callable[[Spot, ValueEdit], str],
 ) -> PlacedNames:
     """Return the edits of the sources for the changes of each description."""
     # They share sources: what one needs at a place, the others get.
@@ -75,7 +75,8 @@ def placed(
             why = "stays with other arguments or elsewhere" if spot in stay else "is put together"
             made.left.append(Left(where, f"{name.change.value!r} {why}"))
             continue
-        made.edits.append(SourceEdit(*spot, spot[1], written(name.change)))
+        word = written(spot, name.change).encode()
+        made.edits.append(SourceEdit(*spot, spot[1], word))
         made.changes[name.of].append(name.change)
     return made
 
@@ -89,6 +90,8 @@ def _places_in(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterat
     for number, element in enumerate(it.inventory.document.elements):
         for attribute, value in _values(element):
             mine = wanted.get((number, attribute), {})
+            if not value and not mine:
+                continue
             own = read.pieces.of(number, attribute, value)
             # Each with the offset in the value at which it ends.
             pieces = [*zip(accumulate(len(it.text) for it in own), own, strict=True)]
@@ -111,10 +114,10 @@ def _with_real_path(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
 
 
 def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
-    """Yield (attribute, value) of an element, and its text under the name "" if it has nothing else."""
+    """Yield (attribute, value) of an element, and its text under the name "" if it has no elements."""
     yield from ((str(name), str(value)) for name, value in element.attrib.items())
-    if element.text and not len(element):
-        yield "", element.text
+    if not len(element):
+        yield "", element.text or ""
 
 
 def _spot_of_use(
@@ -140,7 +143,7 @@ def _spot_of_use(
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
     """Return start and end of an attribute's value, or of an element's text; None without one."""
     if attribute:
-        return attribute_slots(source, start).get(attribute.encode())
+        return written_slot(source, start, attribute)
     begin = tag_end(source, start)
     return begin, source.find(b"<", begin)
 
@@ -165,7 +168,7 @@ def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
     groups = lists_by_key((it.used, it) for it in names)
     deep = {it for it, group in groups.items() if len({name.change is None for name in group}) > 1}
     while True:
-        made = {it.made for it in names if it.change and it.used in deep}
+        made = {it.made for it in names if it.change and it.made and it.used in deep}
         more = {
             it.used for it in names if it.change and it.made in made and it.made != it.used
         } - deep

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
@@ -13,9 +14,10 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.checks.meeting import not_verified
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
-from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, JoinedText, Output, join_texts
+from multibot_rewrite.description.joining.kept import is_joined_whole
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
-from multibot_rewrite.description.joining.second_reading import split_text
+from multibot_rewrite.description.joining.second_reading import Mounted, split_text
 from multibot_rewrite.description.joining.semantic import (
     JoinedSemantics,
     PartSemantics,
@@ -25,8 +27,8 @@ from multibot_rewrite.description.joining.semantic import (
 from multibot_rewrite.description.readback.meeting import meetings, said
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.description.sources.read import Source, SourceText, args_for, read_file
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.related_files.joined import (
@@ -77,10 +79,12 @@ def join(
     trust: bool = False,
     distro: str = "",
     samples: int = 0,
+    output: str = "",
 ) -> Joined:
     """Join descriptions: each part after the first is fixed to a link of those before it.
 
-    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. With
+    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. Where
+    ``output`` names the file that it goes to, relative paths and ``<parameters>`` fit that. With
     ``samples`` random poses pinocchio tells which links of two parts never touch, for the SRDF. Raises
     UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
     name that two of them have, a part with two roots. Raises ProofError as ``rewrite``.
@@ -92,14 +96,20 @@ def join(
     tree = builtin_tree(tuple(definitions), release_here(distro))
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
-    made = join_texts([GivenPart(it, text.data, text.file) for it, text in pairs], tree)
+    controllers = f"{os.path.abspath(output).removesuffix('.urdf')}_controllers.yaml"
+    files = Output(output, controllers if output else "")
+    made = join_texts([GivenPart(it, text.data, text.file) for it, text in pairs], tree, files)
     found = _with_related_files(given, made, tree, trust, samples)
     unread = (
         f"{text.file}: no file of the xacro has the argument {name}"
         for it, text in zip(given, texts, strict=True)
         for name in (text.known.lacks(sorted(it.xacro_args)) if text.known else ())
     )
-    return found._replace(notes=(*unread, *found.notes))
+    # What is joined already keeps its paths.
+    looked_up = _relative_files(
+        made.parts[: is_joined_whole(texts[0].data)] if output else made.parts
+    )
+    return found._replace(notes=(*unread, *looked_up, *found.notes))
 
 
 def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
@@ -139,14 +149,7 @@ def _with_related_files(
         for it in meetings(named, prefixing())
     )
     told = (f"{file}: {what}" for file, what in moveit.notes)
-    notes = (
-        *_relative_files(made),
-        *made.notes,
-        *semantics.notes,
-        *files.notes,
-        *told,
-        *rviz.notes,
-    )
+    notes = (*made.notes, *semantics.notes, *files.notes, *told, *rviz.notes)
     notes, names = (*notes, *met), tuple(it.part.name for it in made.parts)
     return Joined(
         made.data, semantics.data, files.data, names, notes, made.findings, moveit.files, rviz.data
@@ -161,10 +164,10 @@ def split(source: Source, *, definitions: Iterable[str] = (), distro: str = "") 
     return split_text(read_in.data, read_in.file, tree)
 
 
-def _relative_files(made: JoinedText) -> Iterator[str]:
+def _relative_files(parts: Iterable[Mounted]) -> Iterator[str]:
     """Yield notes on meshes and pictures that are looked up from the folder of a part's file."""
-    for it in made.parts:
-        root, file = it.part.inventory.document.root, it.part.file
+    for mounted in parts:
+        root, file = mounted.part.inventory.document.root, mounted.part.file
         names = (one.get("filename", "") for one in root.iter("mesh", "texture"))
         found = [name for name in names if name and "://" not in name and name[0] != "/"]
         if found:

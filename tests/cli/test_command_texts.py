@@ -348,20 +348,22 @@ def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) ->
         "places": 3,
         "after": {"x": b"", "y": b""},
         "unread": {},
-        "mentions": (),
+        "left": (),
     }
     rename._print_result(given, options(**usual))  # type: ignore[arg-type]
     assert capsys.readouterr().err == "multibot: link a -> b: 3 places in 2 files; verified\n"
-    left = [f"f:{at}" for at in range(rename.MOST_MENTIONS + 1)]
-    more = {**usual, "unread": {"p": "p: odd", "q": ""}, "mentions": left}
+    few = ", ".join(f"f:{at}" for at in range(5))
+    left = [options(place=f"f:{at}", why="odd") for at in range(60)]
+    more = {**usual, "unread": {"p": "p: odd", "q": ""}, "left": left}
     rename._print_result(given, options(**more))  # type: ignore[arg-type]
     assert capsys.readouterr().err.splitlines() == [
         "multibot: link a -> b: 3 places in 2 files; verified, 2 descriptions not read",
         "multibot: not checked: p: odd", "multibot: not checked: q",
-        f"multibot: left as they are: {len(left)} lines with 'a': {', '.join(left[:-1])} and 1 more",
+        f"multibot: left as they are: {len(left)} lines with 'a': {few} and {len(left) - 5} more",
+        *(f"multibot:   f:{at}: odd" for at in range(60)),
     ]  # fmt: skip
     rename._print_result(options(**{**vars(given), "verbose": False}), options(**more))  # type: ignore[arg-type]
-    assert capsys.readouterr().err.endswith(f": {', '.join(left[:5])} and {len(left) - 5} more\n")
+    assert capsys.readouterr().err.endswith(f": {few} and {len(left) - 5} more\n")
 
 
 def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) -> None:
@@ -369,35 +371,45 @@ def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) ->
     usual: dict[str, Any] = {
         "argument": "prefix", "verified": ("a",), "configurations": (), "after": {"f": b""},
         "namespace": "", "spaced": (), "launches": (), "already": {}, "left": (), "unread": {},
+        "bare": {},
     }  # fmt: skip
+    top = "a: it takes the argument; verified"
 
     def told(**more: Any) -> list[str]:
         adopt._print_result(given, options(**{**usual, **more}))  # type: ignore[arg-type]
         return [it.removeprefix("multibot: ") for it in capsys.readouterr().err.splitlines()]
 
-    assert told() == ["argument prefix: 1 description in 1 file; verified"]
+    assert told() == ["argument prefix: 1 description in 1 file; verified", top]
     assert told(verified=()) == [
         "argument prefix: 0 descriptions in 1 file; not verified, see what is left"
     ]
     assert told(verified=("a", "b"), configurations=("c",)) == [
-        "argument prefix: 2 descriptions and 1 other configuration in 1 file; verified"
+        "argument prefix: 2 descriptions and 1 other configuration in 1 file; verified",
+        top,
+        "b: it takes the argument; verified",
+    ]
+    assert told(already={"a": "own"}, bare={"c": ("x", "y")})[1:] == [
+        "a: its argument own reaches all its names; verified",
+        "c: error: 'x', 'y' stay without the prefix; put the argument before them by hand",
     ]
     assert told(unread={"u": "u: odd"}) == [
         "argument prefix: 1 description in 1 file; verified, 1 description not read",
+        top,
         "not checked: u: odd",
     ]
     files = {"l": b"<arg prefix:= />", "m": b"<arg ns:= prefix:= />"}
-    assert told(argument="", unread={"u": "u: odd", "v": ""}, already={"x": "tf_prefix"}) == [
+    kept = {"argument": "", "verified": (), "already": {"x": "tf_prefix"}}
+    assert told(**kept, unread={"u": "u: odd", "v": ""}) == [
         "x: it has such an argument already: tf_prefix", "not checked: u: odd", "not checked: v",
     ]  # fmt: skip
     left = (options(place="f:3", why="it is odd"),)
     assert told(
         namespace="ns", spaced=("a", "b"), launches=("l", "m"), after=files, left=left
     ) == [
-        "argument prefix: 1 description in 2 files; verified",
-        "argument ns: what ROS names in 2 descriptions; verified",
+        "argument prefix: 1 description in 2 files; verified", top,
+        "argument ns: namespaces and topics in 2 descriptions; verified",
         "l: it hands prefix on; verified", "m: it hands prefix and ns on; verified",
-        "f:3: left as it is: it is odd",
+        "left as they are: 1 place", "f:3: left as it is: it is odd",
     ]  # fmt: skip
 
 
@@ -502,7 +514,7 @@ def test_the_command_of_ros2() -> None:
     [
         (
             ProofError("x"), 1,
-            "verification failed, nothing was written; this is a fault of the tool: x",
+            "verification failed, nothing was written; this is a fault of the tool, report it: x",
         ),
         (UsageError("x"), 2, "x"), (InputError("x"), 2, "x"), (Unusable("x"), 4, "x"),
         (KeyboardInterrupt(), 130, "interrupted; no half-written file is left"),

@@ -366,9 +366,14 @@ def test_a_diff_is_one_that_patch_reads() -> None:
     )
     coloured = output.diff(b"a\n", b"b\n", "x", "y", colour=True)
     assert coloured == (
-        b"\033[31m--- x\033[0m\n\033[32m+++ y\033[0m\n\033[36m@@ -1 +1 @@\033[0m\n"
+        b"\033[31m--- x\033[0m\n\033[32m+++ y\033[0m\n\033[36m@@ -1,1 +1,1 @@\033[0m\n"
         b"\033[31m-a\033[0m\n\033[32m+b\033[0m\n"
     )
+    # Nothing but changed lines is between lines that are often there.
+    joints = "".join(f"<joint name='{it}'>\n</joint>\n" for it in range(150)).encode()
+    made = output.diff(joints, joints.replace(b"='", b"='p_"), "x", "y")
+    assert made.count(b"\n-") == made.count(b"\n+") - 1 == 150
+    assert output.diff(joints, joints, "x", "y") == b""
 
 
 def test_files_that_options_name_to_be_read() -> None:

@@ -198,15 +198,178 @@ def test_one_with_a_namespace_of_its_own_keeps_it(tmp_path: Path) -> None:
     assert b"/$(arg robot_namespace)</robotNamespace>" in made.after[str(path)]
 
 
-def test_a_taken_name_is_not_used_for_the_argument(tmp_path: Path) -> None:
+WHEEL = '<xacro:macro name="w" params="prefix"><link name="${prefix}_wheel"/></xacro:macro>'
+# What takes a prefix already -> what it becomes, and the argument of that.
+HANDED = {
+    "a call": (
+        f'{WHEEL}<xacro:w prefix="left"/>',
+        f'{WHEEL}<xacro:w prefix="$(arg prefix)left"/>',
+        "prefix",
+    ),
+    "a call that gives it another name": (
+        WHEEL.replace("prefix", "arm_id") + '<xacro:w arm_id="left"/>',
+        WHEEL.replace("prefix", "arm_id") + '<xacro:w arm_id="$(arg prefix)left"/>',
+        "prefix",
+    ),
+    "a call without it": (
+        WHEEL.replace('="prefix"', "=\"prefix:='a'\"") + "<xacro:w/>",
+        WHEEL.replace('="prefix"', "=\"prefix:='a'\"") + '<xacro:w prefix="$(arg prefix)a"/>',
+        "prefix",
+    ),
+    "a call through another one, and a name beside": (
+        '<xacro:macro name="o" params="prefix"><xacro:w prefix="${prefix}"/><link name="hub"/>'
+        f'</xacro:macro>{WHEEL}<xacro:o prefix=""/>',
+        '<xacro:macro name="o" params="prefix"><xacro:w prefix="${prefix}"/>'
+        f'<link name="${{prefix}}hub"/></xacro:macro>{WHEEL}<xacro:o prefix="$(arg prefix)"/>',
+        "prefix",
+    ),
+    "a property": (
+        '<xacro:property name="prefix" value=""/><link name="${prefix}a"/><link name="b"/>',
+        '<xacro:property name="prefix" value="$(arg prefix)"/><link name="${prefix}a"/>'
+        '<link name="${prefix}b"/>',
+        "prefix",
+    ),
+}
+
+
+def test_a_prefix_that_changes_more_than_names_is_handed_to_nobody(tmp_path: Path) -> None:
     inside = (
-        '<xacro:macro name="w" params="prefix"><link name="${prefix}_wheel"/></xacro:macro>'
-        '<xacro:w prefix="left"/>'
+        '<xacro:property name="prefix" value=""/><link name="${prefix}a"/>'
+        '<xacro:if value="${prefix == \'\'}"><link name="b"/></xacro:if>'
     )
     (tmp_path / "r.urdf.xacro").write_text(robot(inside))
     made = adopt(str(tmp_path))
-    assert made.argument == "robot_prefix"
-    assert b'<link name="${robot_prefix}${prefix}_wheel"/>' in next(iter(made.after.values()))
+    assert (made.argument, len(made.verified)) == ("prefix", 1)
+    assert b'<link name="$(arg prefix)b"/>' in made.after[str(tmp_path / "r.urdf.xacro")]
+
+
+@pytest.mark.parametrize("case", HANDED)
+def test_what_takes_a_prefix_already_gets_the_argument(case: str, tmp_path: Path) -> None:
+    inside, wanted, argument = HANDED[case]
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot(inside))
+    made = adopt(str(tmp_path))
+    declared = ARGUMENT.splitlines()[1]
+    assert made.after[str(path)].decode() == robot(wanted, f"\n{declared}")
+    assert (made.argument, made.verified, dict(made.bare)) == (argument, (str(path),), {})
+
+
+def test_a_parameter_of_the_name_does_not_hide_the_argument(tmp_path: Path) -> None:
+    """It is in the middle of a name, so nothing can be handed to it."""
+    inside = (
+        '<xacro:macro name="m" params="prefix"><link name="${prefix}_a"/><link name="b_${prefix}"/>'
+        '</xacro:macro><xacro:m prefix="left"/>'
+    )
+    (tmp_path / "r.urdf.xacro").write_text(robot(inside))
+    made = adopt(str(tmp_path))
+    names = b'<link name="$(arg prefix)${prefix}_a"/><link name="$(arg prefix)b_${prefix}"/>'
+    assert names in next(iter(made.after.values()))
+
+
+def test_an_argument_that_another_description_hands_on_is_not_put_before_its_names_twice(
+    tmp_path: Path,
+) -> None:
+    """Both use the macro, whose material has the parameter, too: so it is not handed to the call."""
+    link = '<link name="${prefix}a"><visual><material name="${prefix}red"/></visual></link>'
+    macro = f'<xacro:macro name="m" params="prefix">{link}</xacro:macro>'
+    (tmp_path / "m.xacro").write_text(f"<robot {SPACE}>{macro}</robot>")
+    include = '<xacro:include filename="m.xacro"/>'
+    own = '<xacro:arg name="prefix" default=""/><xacro:m prefix="$(arg prefix)"/>'
+    (tmp_path / "one.urdf.xacro").write_text(robot(include + own))
+    (tmp_path / "two.urdf.xacro").write_text(robot(f'{include}<xacro:m prefix="l_"/>'))
+    made = adopt(str(tmp_path))
+    for path, data in made.after.items():
+        Path(path).write_bytes(data)
+    assert b'<link name="z_a">' in expand(str(tmp_path / "one.urdf.xacro"), {"prefix": "z_"})
+
+
+# What an argument reaches in part -> what it becomes.
+PARTIAL = {
+    "its property": (
+        '<xacro:property name="p" value="$(arg prefix)"/><link name="${p}a"/><link name="b"/>',
+        '<xacro:property name="p" value="$(arg prefix)"/><link name="${p}a"/><link name="${p}b"/>',
+    ),
+    "alone, and a reference": (
+        '<link name="$(arg prefix)a"/><gazebo reference="a"/>',
+        '<link name="$(arg prefix)a"/><gazebo reference="$(arg prefix)a"/>',
+    ),
+    "nothing yet": ('<link name="a"/>', '<link name="$(arg prefix)a"/>'),
+    "an attribute of another namespace": (
+        '<link name="$(arg prefix)a"/><gazebo reference="$(arg prefix)a" xmlns:gz="http://gazebosim.org/schema"><collision>'
+        '<surface><friction><ode><fdir1 gz:expressed_in="a">1 0 0</fdir1></ode></friction></surface>'
+        "</collision></gazebo>",
+        '<link name="$(arg prefix)a"/><gazebo reference="$(arg prefix)a" xmlns:gz="http://gazebosim.org/schema"><collision>'
+        '<surface><friction><ode><fdir1 gz:expressed_in="$(arg prefix)a">1 0 0</fdir1></ode>'
+        "</friction></surface></collision></gazebo>",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", PARTIAL)
+def test_an_argument_of_its_own_reaches_all_names(case: str, tmp_path: Path) -> None:
+    inside, wanted = PARTIAL[case]
+    path = tmp_path / "r.urdf.xacro"
+    own = '<xacro:arg name="prefix" default=""/>'
+    path.write_text(robot(f"{own}{inside}"))
+    made = adopt(str(tmp_path))
+    assert {it: data.decode() for it, data in made.after.items()} == {
+        str(path): robot(f"{own}{wanted}")
+    }
+    assert (dict(made.already), made.verified) == ({str(path): "prefix"}, (str(path),))
+
+
+def test_a_file_of_macros_that_take_it_declares_no_argument(tmp_path: Path) -> None:
+    names = '<link name="${prefix}a"/><gazebo reference="a"/>'
+    macro = f'<robot {SPACE}><xacro:macro name="m" params="prefix">{names}</xacro:macro></robot>'
+    (tmp_path / "m.xacro").write_text(macro)
+    own = '<xacro:arg name="prefix" default=""/><xacro:m prefix="$(arg prefix)"/>'
+    (tmp_path / "r.urdf.xacro").write_text(robot(f'<xacro:include filename="m.xacro"/>{own}'))
+    ((path, data),) = adopt(str(tmp_path)).after.items()
+    wanted = macro.replace('reference="a"', 'reference="${prefix}a"')
+    assert (path, data.decode()) == (str(tmp_path / "m.xacro"), wanted)
+
+
+# Two arguments that are not empty; together they are before all links but that of the world.
+ARMS = (
+    '<xacro:arg name="prefix_1" default="L_"/><xacro:arg name="prefix_2" default="R_"/>'
+    '<xacro:macro name="m" params="prefix"><link name="${prefix}a"/></xacro:macro>'
+    '<link name="ground"/><xacro:m prefix="$(arg prefix_1)"/><xacro:m prefix="$(arg prefix_2)"/>'
+)
+
+
+@pytest.mark.parametrize(("more", "stays"), [("", True), ('<link name="b"/>', False)])
+def test_two_arms_with_an_argument_each_stay(more: str, stays: bool, tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot(ARMS + more))
+    made = adopt(str(tmp_path))
+    assert (dict(made.already), bool(made.after)) == (
+        {str(path): "prefix_1, prefix_2"} if stays else {},
+        not stays,
+    )
+
+
+def test_a_robot_that_another_one_includes_takes_the_argument_too(tmp_path: Path) -> None:
+    arm = tmp_path / "arm.urdf.xacro"
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    arm.write_text(robot(f'<link name="a"/><link name="b"/>{joint}'))
+    (tmp_path / "more.urdf.xacro").write_text(robot('<xacro:include filename="arm.urdf.xacro"/>'))
+    made = adopt(str(tmp_path))
+    assert made.verified == tuple(str(tmp_path / f"{it}.urdf.xacro") for it in ("more", "arm"))
+    arm.write_bytes(made.after[str(arm)])
+    assert b'<link name="left_b"/>' in expand(str(arm), {"prefix": "left_"})
+
+
+def test_names_that_no_argument_reaches_are_an_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """An argument that is a part of a name is not put before others."""
+    own = '<xacro:arg name="robot_name" default=""/>'
+    names = "".join(f'<link name="$(arg robot_name)_{it}"/>' for it in "ab")
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot(f'{own}{names}<link name="c"/>'))
+    assert dict(adopt(str(tmp_path)).bare) == {str(path): ("c",)}
+    assert main(["adopt", str(tmp_path)]) == 1
+    assert f"{path}: error: 'c' stay without the prefix" in capsys.readouterr().err
 
 
 def test_a_plain_urdf_becomes_a_xacro_beside_it(tmp_path: Path) -> None:
@@ -303,7 +466,10 @@ def test_the_command_prints_a_patch_or_changes_the_files(
     shown = capsys.readouterr()
     assert "--- a/r.urdf.xacro\n+++ b/r.urdf.xacro\n" in shown.out
     assert '+  <link name="${prefix}base"/>\n' in shown.out
-    assert shown.err == "multibot: argument prefix: 1 description in 1 file; verified\n"
+    assert shown.err == (
+        "multibot: argument prefix: 1 description in 1 file; verified\n"
+        "multibot: r.urdf.xacro: it takes the argument; verified\n"
+    )
     assert path.read_text() == robot('<link name="base"/>')
     assert main(["adopt", ".", "--in-place"]) == 0
     assert path.read_text() == robot('<link name="${prefix}base"/>', ARGUMENT)

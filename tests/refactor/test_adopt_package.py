@@ -192,7 +192,7 @@ def test_sections_of_parameters_are_told_where_there_is_a_namespace(package: Pat
     (told,) = adopt(str(package)).left
     assert (told.place, told.why) == (
         f"{package}/config/c.yaml:2",
-        "'controller_manager' is for no node in a namespace; write /**/controller_manager",
+        "'controller_manager' matches no node in a namespace; write /**/controller_manager",
     )
 
 
@@ -233,12 +233,17 @@ def test_a_plain_srdf_becomes_a_xacro_beside_it(package: Path) -> None:
         '<robot name="r"><group name="g"><joint name="j"/></group>'
         '<disable_collisions link1="base" link2="arm" reason="Adjacent"/></robot>'
     )
+    write_files(package, {"launch/b.launch.py": "a = ('config/r.srdf', 'r.srdf.bak', 'or.srdf')\n"})
+    write_files(package, {".setup_assistant": "srdf:\n  relative_path: config/r.srdf\n"})
     made = adopt(str(package))
     text = made.after[f"{srdf}.xacro"].decode()
     assert '<group name="g"><joint name="${prefix}j"/>' in text
     assert 'link1="${prefix}base" link2="${prefix}arm"' in text
     assert str(srdf) not in made.after
-    assert made.left == ()
+    why = "names 'config/r.srdf', which has no prefix; expand the .xacro next to it in its place"
+    assert [(it.place.removeprefix(f"{package}/"), it.why) for it in made.left] == [
+        (".setup_assistant:2", f"it {why}"), ("launch/b.launch.py:1", f"the launch file {why}")
+    ]  # fmt: skip
     Path(f"{srdf}.xacro").write_text(text)
     assert b'link1="base"' in expand(f"{srdf}.xacro", {})
 
@@ -315,7 +320,7 @@ def test_of_many_lines_of_a_file_twenty_are_listed(package: Path, lines: int) ->
     listed += [last] if lines == 20 else []
     assert {*listed} == {"its code names 'arm', which a prefix does not reach"}
     assert len(listed) == 20
-    assert lines == 20 or last == "its code names such names in 3 lines more"
+    assert lines == 20 or last == "its code names such names in other lines, too: 21, 22, 23"
 
 
 @pytest.mark.parametrize("name", ["prefix", "tf_prefix"])
@@ -344,8 +349,10 @@ def test_an_argument_with_the_name_of_the_robot_is_one(package: Path) -> None:
 
 
 def test_an_argument_for_something_else_is_none(package: Path) -> None:
-    own = '<xacro:arg name="prefix" default=""/><gazebo reference="$(arg prefix)base"/>\n'
-    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format(own))
+    own = '<xacro:arg name="prefix" default=""/><xacro:property name="p" value="$(arg prefix)"/>\n'
+    mesh = '<visual><geometry><mesh filename="${p}a.stl"/></geometry></visual>'
+    text = ROBOT.replace('"base"/>', f'"base">{mesh}</link>').replace("  <link", f"{own}  <link", 1)
+    (package / "urdf/r.urdf.xacro").write_text(text.replace("{}", JOINT))
     made = adopt(str(package))
     assert (made.argument, dict(made.already)) == ("robot_prefix", {})
 

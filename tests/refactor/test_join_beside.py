@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
 import yaml
+from lxml import etree
 from paths import fixture_text
 
-from multibot_rewrite import InputError, Part, join
+from multibot_rewrite import InputError, Part, join, split
 from multibot_rewrite.cli.multibot import main
 
 SHAPE = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
@@ -286,3 +288,98 @@ def test_a_display_is_told_by_class_topic_and_frame(
     )
     made = join([arm, gripper._replace(name="g")])
     assert (b"rviz_common/Group" in made.rviz) == again
+
+
+SYSTEM = (
+    '<ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin>'
+    '</hardware><joint name="{}"><command_interface name="position"/></joint></ros2_control>'
+    '<gazebo><plugin filename="libgz_ros2_control-system.so" '
+    'name="gz_ros2_control::GazeboSimROS2ControlPlugin"><parameters> {} </parameters></plugin></gazebo>'
+    "</robot>"
+)
+
+
+def test_what_refers_to_files_refers_to_the_new_ones(tmp_path: Path) -> None:
+    """One plugin with one file of all controllers; meshes by paths from the new folder."""
+    given = []
+    for name, text, joint in (("arm", ARM, "turn"), ("hand", GRIPPER, "grip")):
+        (tmp_path / name).mkdir()
+        path, controllers = tmp_path / name / f"{name}.urdf", tmp_path / name / "c.yaml"
+        mesh = text.replace('<box size="1 1 1"/>', '<mesh filename="m/a&amp;b.stl"/>', 1)
+        path.write_text(mesh.replace("</robot>", SYSTEM.format(joint, controllers)))
+        controllers.write_text(f"{name}:\n  ros__parameters: {{joints: [{joint}]}}\n")
+        at = "arm_tool" if given else ""
+        given.append(Part(str(path), at, prefix=f"{name}_", controllers=[str(controllers)]))
+    made = join(given, output=str(tmp_path / "o/robot.urdf"))
+    root = etree.fromstring(made.data)
+    files = [(it.text or "").strip() for it in root.iter("parameters")]
+    assert files == [str(tmp_path / "o/robot_controllers.yaml")]
+    meshes = [it.get("filename") for it in root.iter("mesh")]
+    assert meshes == ["../arm/m/a&b.stl", "../hand/m/a&b.stl"]
+    assert split(made.data) == {
+        Path(str(it.description)).stem: Path(str(it.description)).read_bytes() for it in given
+    }
+    # What else was edited by hand stays as it is.
+    larger = made.data.replace(b'"../hand/m/a&amp;b.stl"', b'"../hand/m/a&amp;b.stl" scale="2 2 2"')
+    assert b'<mesh filename="m/a&amp;b.stl" scale="2 2 2"/>' in split(larger)["hand"]
+    gone = made.data.replace(b'<mesh filename="../hand/m/a&amp;b.stl"/>', b"")
+    with pytest.raises(InputError, match="followed a comment 'multibot was' was edited by hand"):
+        split(gone)
+    plain = etree.fromstring(join(given).data).iter("parameters")
+    assert [(it.text or "").strip() for it in plain] == [
+        str(tmp_path / "arm/c.yaml"),
+        str(tmp_path / "hand/c.yaml"),
+    ]
+
+
+def test_paths_of_a_text_and_of_what_is_joined_already_stay(tmp_path: Path) -> None:
+    text = ARM.replace('<box size="1 1 1"/>', '<mesh filename="m/a.stl"/>', 1)
+    for name in ("arm", "hand"):
+        (tmp_path / f"{name}.urdf").write_text(text)
+    parts = [Part(str(tmp_path / "arm.urdf")), Part(text, "tool", prefix="b_", name="b")]
+    made = join(parts, output=str(tmp_path / "o/two.urdf"))
+    (tmp_path / "o").mkdir()
+    (tmp_path / "o/two.urdf").write_bytes(made.data)
+    more = Part(str(tmp_path / "hand.urdf"), "b_tool", prefix="c_")
+    whole = join(
+        [Part(str(tmp_path / "o/two.urdf")), more], output=str(tmp_path / "p/q/three.urdf")
+    )
+    meshes = [it.get("filename") for it in etree.fromstring(whole.data).iter("mesh")]
+    assert meshes == ["../m/a.stl", "m/a.stl", "../../m/a.stl"]
+    assert [it for it in whole.notes if "two.urdf: '../m/a.stl' is looked up from the folder" in it]
+    assert set(split(whole.data).values()) == {text.encode()}
+
+
+def test_both_parts_move_by_what_the_joined_controllers_command(tmp_path: Path) -> None:
+    """Each joint of the one controllers' file is driven by a system of the description, and turns."""
+    mujoco = pytest.importorskip("mujoco")
+    inertia = (
+        '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    )
+    parts = []
+    for name, text, joint in (("arm", ARM, "turn"), ("hand", GRIPPER, "grip")):
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(f"{name}:\n  ros__parameters: {{joints: [{joint}]}}\n")
+        solid = re.sub(r'(<link name="\w+")(?:/>|>)', rf"\1>{inertia}</inertial>@", text)
+        # Without shapes: these are all in one place and would hold each other.
+        solid = solid.replace(f"@{SHAPE}", "@").replace("@</link>", "@").replace("@", "</link>")
+        whole = solid.replace("</robot>", SYSTEM.format(joint, path))
+        at = "arm_tool" if parts else ""
+        parts.append(Part(whole, at, prefix=f"{name}_", controllers=[str(path)]))
+    made = join(parts, output=str(tmp_path / "robot.urdf"))
+    sections = yaml.safe_load(made.controllers)
+    commanded = {it for one in sections.values() for it in one["ros__parameters"].get("joints", ())}
+    root = etree.fromstring(made.data)
+    assert commanded == {it.get("name") for it in root.iterfind("ros2_control/joint")}
+    files = [(it.text or "").strip() for it in root.iter("parameters")]
+    assert files == [str(tmp_path / "robot_controllers.yaml")]
+    for it in (*root.findall("gazebo"), *root.findall("ros2_control")):
+        root.remove(it)
+    model = mujoco.MjModel.from_xml_string(etree.tostring(root).decode())
+    state = mujoco.MjData(model)
+    joints = [state.joint(it) for it in sorted(commanded)]
+    for it, torque in zip(joints, (2.0, 1.0), strict=True):
+        it.qfrc_applied[:] = torque
+    for _ in range(20):
+        mujoco.mj_step(model, state)
+    assert all(abs(it.qpos[0]) > 1e-6 for it in joints)

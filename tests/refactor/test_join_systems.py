@@ -9,7 +9,7 @@ from types import FunctionType
 import pytest
 from lxml import etree
 
-from multibot_rewrite import Joined, Part, ProofError, join
+from multibot_rewrite import InputError, Joined, Part, ProofError, join
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.joining import blocks
 
@@ -55,6 +55,16 @@ def driven(made: Joined) -> dict[str, list[tuple[str, str]]]:
 
 LEFT = [("joint", "l_turn"), ("sensor", "l_wrist")]
 RIGHT = [("joint", "r_turn"), ("sensor", "r_wrist")]
+
+
+def test_one_id_twice_on_one_hardware_is_refused_or_told() -> None:
+    numbered = ONE.replace('name="turn"><c', 'name="turn"><param name="ID">1</param><c')
+    with pytest.raises(InputError, match=r"'r_turn' and 'l_turn' have one ID=1 on one hardware"):
+        two(numbered, first=numbered)
+    assert "have one ID=1" in " ".join(two(numbered, False, numbered).notes)
+    other = numbered.replace(">1<", ">2<")
+    assert "have one ID" not in " ".join(two(other, False, numbered).notes)
+    assert driven(two(other, first=numbered)) == {"l_driver": [*LEFT, *RIGHT]}
 
 
 def test_parts_of_one_hardware_have_one_system() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.refactor.launch_argument import Space, with_argument
+from multibot_rewrite.refactor.launch_argument import Space, literal_parameters, with_argument
 
 HEAD = """from launch import LaunchDescription
 from launch.substitutions import Command
@@ -229,3 +229,12 @@ def test_a_launch_file_with_a_namespace_keeps_that() -> None:
         "a.launch.py", source, "prefix", ["r.urdf.xacro"], (), Space("namespace", True)
     )
     assert [it.why for it in made.left] == ["give its xacro the argument by hand"]
+
+
+def test_a_literal_parameter_has_its_place_its_node_and_its_key() -> None:
+    named = b'<node pkg="a" exec="b" name="n"><param name="f" value="x"/></node>'
+    data = b"<launch>%s%s<param value='x'/></launch>" % (named, named.replace(b' name="n"', b""))
+    first = data.index(b'"x"') + 1
+    second = data.index(b'"x"', first) + 1
+    found = [*literal_parameters("a.launch.xml", data, "x")]
+    assert found == [(first, "n", "f"), (second, "b", "f")]

@@ -11,15 +11,10 @@ import pytest
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED
-from multibot_rewrite.refactor.namespaces import (
-    NAMES,
-    SPACES,
-    free_name,
-    namespaced,
-    space_verified,
-)
+from multibot_rewrite.refactor.namespaces import namespaced, space_verified
 from multibot_rewrite.refactor.package import Expanding, read_package, texts_of
 from multibot_rewrite.refactor.source_edits import edited
+from multibot_rewrite.refactor.xacro_sources import NAMES, SPACES, Sources
 
 ROBOT = (
     '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/><gazebo>'
@@ -54,12 +49,10 @@ def verified(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, .
         '<xacro:macro name="m" params="{} c"/>',
     ],
 )
-def test_the_first_name_that_is_free_is_taken(form: str, tmp_path: Path) -> None:
+def test_the_first_name_that_is_free_is_taken(form: str) -> None:
     """By an argument, a property or a parameter of a macro, with a default or without."""
-    tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
-    (tmp_path / "r.urdf.xacro").write_text(ROBOT.format(form.format("one")))
-    found = read_package(str(tmp_path), tree, how).descriptions
-    assert free_name(found, ("one", "two", "three")) == "two"
+    sources = Sources({"r": ROBOT.format(form.format("one")).encode(), "c.yaml": b"one: 1"})
+    assert sources.free_name(("one", "two", "three"), sources.hiding) == "two"
 
 
 def test_names_of_arguments_are_those_that_people_use() -> None:
@@ -70,14 +63,18 @@ def test_names_of_arguments_are_those_that_people_use() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        (b"/${namespace and namespace + '/'}demo", b"/demo", "<robotNamespace>/demo"),
-        (b'<link name="base"/>', b'<link name="top" x="1"/>', '<link name="top" x="1">'),
+        (
+            b"/${namespace and namespace + '/'}demo",
+            b"/demo",
+            "<robotNamespace>/demo</robotNamespace>",
+        ),
+        (b'<link name="base"/>', b'<link name="top" x="1"/>', '<link name="top" x="1"/>'),
         (b"<link name='last'/>", b"", "</robot>"),
-        (b"<legacyModeNS>true", b"<legacyModeNS>no", "<legacyModeNS>no"),
+        (b"<legacyModeNS>true", b"<legacyModeNS>no", "<legacyModeNS>no</legacyModeNS>"),
         # An element of another one, and one more.
-        (b"</plugin></gazebo>", b"</plugin><x/></gazebo>", "<x>"),
-        (b"</gazebo>", b'</gazebo><link name="more"/>', '<link name="more">'),
-        (b"</robot>", b"<link name='more'/></robot>", '<link name="more">'),
+        (b"</plugin></gazebo>", b"</plugin><x/></gazebo>", "<x/>"),
+        (b"</gazebo>", b'</gazebo><link name="more"/>', '<link name="more"/>'),
+        (b"</robot>", b"<link name='more'/></robot>", '<link name="more"/>'),
     ],
 )
 def test_what_is_otherwise_is_said(tmp_path: Path, old: bytes, new: bytes, said: str) -> None:
@@ -100,7 +97,7 @@ def test_it_is_tried_beside_a_prefix_too(tmp_path: Path) -> None:
     declared = b'<xacro:arg name="prefix" default=""/>'
     test = b"${'$(arg prefix)' != '' and namespace != ''}"
     bad = b'<xacro:if value="%s"><link name="odd"/></xacro:if>' % test
-    why = 'its ROS names are not verified: with namespace:=ns1 it has <link name="odd">'
+    why = 'its ROS names are not verified: with namespace:=ns1 it has <link name="odd"/>'
     tampered = verified(
         tmp_path,
         lambda it: it.replace(b"<link name='last'/>", declared + bad + b"<link name='last'/>"),

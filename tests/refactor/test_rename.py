@@ -60,7 +60,8 @@ def test_a_link_is_renamed_where_it_is_made_and_in_the_files_beside(
         "controllers.yaml": mark + CONTROLLERS.replace("base_link", "chassis"),
     }
     assert made.places == 3
-    assert made.mentions == (f"{package}/node.py:1",)
+    comment = f"{package}/r.urdf.xacro:2"
+    assert [it.place for it in made.left] == [f"{package}/node.py:1", comment]
 
 
 def test_lines_that_are_left_are_in_the_order_of_their_paths(package: Path) -> None:
@@ -69,20 +70,55 @@ def test_lines_that_are_left_are_in_the_order_of_their_paths(package: Path) -> N
         (package / name / "n.py").write_text('F = "base_link"\n')
     made = rename_symbol("base_link", "chassis", str(package))
     inside = [f"{package}/{name}/n.py:1" for name in ("alpha", "beta", "kappa", "zeta")]
-    assert list(made.mentions) == [f"{package}/node.py:1", *inside]
+    places = [f"{package}/node.py:1", f"{package}/r.urdf.xacro:2", *inside]
+    assert [it.place for it in made.left] == places
 
 
 def test_lines_are_told_of_every_kind_of_text(package: Path) -> None:
     """Code, and what a package of ROS has beside it; a picture has no lines."""
     kinds = {
         *("py", "yaml", "yml", "xml", "rviz", "lua"),
-        *("cpp", "hpp", "h", "xacro", "srdf"),
+        *("cpp", "hpp", "h", "xacro", "srdf", "md", "rst", "txt"),
     }  # fmt: skip
     (package / "node.py").unlink()
-    for kind in (*kinds, "png", "txt"):
+    for kind in (*kinds, "png"):
         (package / f"a.{kind}").write_text("x(base_link) # base_link2 /base_link\n")
     made = rename_symbol("base_link", "chassis", str(package))
-    assert {it.rpartition(".")[2] for it in made.mentions} == {f"{it}:1" for it in kinds}
+    places = (it.place for it in made.left if "r.urdf" not in it.place)
+    assert {it.rpartition(".")[2] for it in places} == {f"{it}:1" for it in kinds}
+
+
+LAUNCH = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    given = {"frame_id": "base_link", "text": "base_link", "odom": f"{1}/base_link"}
+    return LaunchDescription([Node(package="a", executable="b", parameters=[GIVEN])])
+"""
+XML = '<launch><node pkg="a" exec="b"><param name="frame_id" value="base_link"/></node></launch>'
+
+
+def test_a_literal_parameter_of_a_launch_file_is_renamed(package: Path) -> None:
+    """``text`` is no frame, and what is put together is told."""
+    (package / "node.py").unlink()
+    (package / "launch").mkdir()
+    lines = LAUNCH.splitlines(keepends=True)
+    given = lines.pop(4).partition("= ")[2].strip()
+    old = "".join(lines).replace("GIVEN", given)
+    (package / "launch/a.launch.py").write_text(old)
+    (package / "launch/a.launch.xml").write_text(XML)
+    # One that cannot be read is left.
+    (package / "launch/b.launch.xml").write_text(XML.replace("/><", "><"))
+    made = rename_symbol("base_link", "chassis", str(package))
+    new = {Path(path).name: data.decode() for path, data in made.after.items()}
+    assert new["a.launch.xml"] == XML.replace("base_link", "chassis")
+    assert new["a.launch.py"] == old.replace('frame_id": "base_link', 'frame_id": "chassis')
+    assert [(it.place, it.why) for it in made.left] == [
+        (f"{package}/r.urdf.xacro:2", "it names 'base_link'"),
+        (f"{package}/launch/a.launch.py:5", "the launch file names 'base_link'"),
+        (f"{package}/launch/b.launch.xml:1", "the launch file names 'base_link'"),
+    ]
 
 
 def test_an_srdf_alone_declares_no_link(tmp_path: Path) -> None:
@@ -161,6 +197,8 @@ def test_an_srdf_follows_its_urdf(tmp_path: Path) -> None:
 def test_wrong_names_are_refused(package: Path, old: str, new: str, kind: str, said: str) -> None:
     with pytest.raises(UsageError, match=said):
         rename_symbol(old, new, str(package), kind=kind)
+    with pytest.raises(UsageError, match="no xacro has the argument 'size'; leave it out"):
+        rename_symbol("base_link", "x", str(package), xacro_args={"size": "1"})
 
 
 @pytest.mark.more
@@ -173,7 +211,8 @@ def test_the_command_writes_all_or_shows_it(
     shown = capsys.readouterr()
     assert '-  <xacro:property name="root" value="base_link"/>' in shown.out
     assert "link base_link -> chassis: 3 places in 2 files; verified" in shown.err
-    assert "left as they are: 1 line with 'base_link': node.py:1\n" in shown.err
+    assert "left as they are: 2 lines with 'base_link'" in shown.err
+    assert "  node.py:1: its code names 'base_link'\n" in shown.err
     assert (package / "r.urdf.xacro").read_text() == ROBOT
     assert main(words) == 0
     assert "base_frame_id: chassis" in (package / "controllers.yaml").read_text()

@@ -10,12 +10,14 @@ gpios and transmissions; urdfdom model.cpp (``parseURDF``: a material below ``<r
 there twice is an error; ``assignMaterial``: of a name that the model has, whatever is in the
 visual is not read)."""
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.joining.kept import left_out, was
 from multibot_rewrite.description.joining.part import ReadPart
@@ -112,11 +114,15 @@ def _left_out_settings(plugin: _Element, other: _Element, part: Inventory) -> It
             yield f"{where}: <{it.tag}> is left out: the plugin of an earlier part counts"
 
 
+# A parameter of a joint, gpio or sensor that is its number on a bus.
+_ID = re.compile(r"(^|_)id$", re.IGNORECASE)
 _SYSTEM, _HARDWARE = "ros2_control", "hardware"
 
 
 def one_system(joined: Inventory, part: Inventory) -> Once:
     """Return the edits that merge a part's systems into earlier ones; an unmatched one has a note."""
+    for what in same_ids(joined, part):
+        raise InputError(f"{what}; change one")
     spans, before = Spans(part.document), Spans(joined.document)
     gone: list[Edit] = []
     more: list[Edit] = []
@@ -134,6 +140,24 @@ def one_system(joined: Inventory, part: Inventory) -> Once:
         texts = (spans.text_of(one) for one in driven(it))
         more += [was(end, end, b"", b"\n    " + text) for text in texts]
     return Once(tuple(gone), tuple(more), tuple(notes))
+
+
+def same_ids(joined: Inventory, part: Inventory) -> Iterator[str]:
+    """Yield what two parts drive under one id of one hardware, such as motors on a bus."""
+    for system in part.document.root.iterchildren(_SYSTEM):
+        known = dict(chain.from_iterable(map(_ids, like(system, joined.document.root))))
+        for key, name in _ids(system):
+            if other := known.get(key):
+                where = f"{part.document.file}:{system.sourceline}"
+                yield f"{where}: {name!r} and {other!r} have one {'='.join(key)} on one hardware"
+
+
+def _ids(system: _Element) -> Iterator[tuple[tuple[str, str], str]]:
+    """Yield ((parameter, id), name) of each joint, gpio and sensor with an id."""
+    for component in driven(system):
+        for param in component.iterchildren("param"):
+            if _ID.search(param.get("name", "")):
+                yield (param.get("name", ""), text_of(param)), component.get("name", "")
 
 
 def like(system: _Element, root: _Element) -> Iterator[_Element]:

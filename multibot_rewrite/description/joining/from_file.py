@@ -17,7 +17,7 @@ from typing import Any
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, JoinedText, Output, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
 from multibot_rewrite.description.rewriters.tree import builtin_tree
@@ -75,7 +75,7 @@ def read_joined(path: str, trust: bool) -> SourceText:
     """Return the joined description of a file, without comments; raises as ``join_texts``."""
     given, read = plain_texts(parts_of(path), trust)
     try:
-        made = join_texts(given, builtin_tree((), release_here()))
+        made = join_texts(given, builtin_tree((), release_here()), Output(path))
     except UsageError as error:
         raise InputError(f"{path}: {error}") from None
     return SourceText(plain_text(made, path), f"{path} (expanded)", (path, *read))

@@ -4,6 +4,7 @@
 The first part's file goes on: its declaration, name and attributes are those of the whole. A root
 link ``world`` of a later part is left out, and what is fixed to it is fixed to ``at`` itself."""
 
+import os
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import isfinite
 from typing import NamedTuple
@@ -31,6 +32,7 @@ from multibot_rewrite.description.joining.blocks import (
     prefixed,
     repeated,
     said_once,
+    same_ids,
     word_of,
 )
 from multibot_rewrite.description.joining.part import (
@@ -111,7 +113,9 @@ def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -
     old = joint.parts.get("origin")
     inner = pose_of(old)
     if inner is None:
-        raise InputError(f"{part.file}: the origin of {joint.name!r} is no six numbers")
+        raise InputError(
+            f"{part.file}: the origin of {joint.name!r} is not six numbers, correct it"
+        )
     outer = pose_of_six(pose)
     text = _origin(outer, pose) if inner == HERE else _origin(pose_in_parent(outer, inner))
     start = spans.start_of(joint.element if old is None else old)
@@ -151,20 +155,56 @@ class GivenPart(NamedTuple):
     file: str
 
 
-def join_texts(given: Sequence[GivenPart], tree: Tree) -> JoinedText:
-    """Join descriptions; raises UsageError and InputError in one line, ProofError."""
+class Output(NamedTuple):
+    """The file that a joined description goes to, and that of all controllers; empty if unknown."""
+
+    path: str = ""
+    controllers: str = ""
+
+
+NOWHERE = Output()
+
+
+def _with_references(part: ReadPart, spec: Part, output: Output, tree: Tree) -> ReadPart:
+    """Return a part that refers to files from the folder of the output, and to all controllers."""
+    # Source: gz_ros2_control_plugin.cpp (``<parameters>`` is a path).
+    document = read_document(part.text, part.file)
+    spans, controllers = Spans(document), {os.path.basename(it) for it in spec.controllers}
+    folder = os.curdir
+    if output.path and not part.file.startswith("<"):
+        here, there = (os.path.dirname(os.path.abspath(it)) for it in (part.file, output.path))
+        folder = os.path.relpath(here, there)
+    edits: list[Edit] = []
+    for element in document.root.iter("mesh", "texture", "parameters"):
+        is_files = element.tag == "parameters"
+        path = ((element.text if is_files else element.get("filename")) or "").strip()
+        new = path
+        if is_files and os.path.basename(path) in controllers:
+            new = output.controllers
+        elif not is_files and path and "://" not in path and folder != os.curdir:
+            new = os.path.join(folder, path)
+        if new and new != path:
+            edits += kept.path_edits(spans, element, new.translate(ESCAPES).encode())
+    text = _edited_text(document.source, edits)
+    return part._replace(text=text, inventory=collect(read_document(text, part.file), tree))
+
+
+def join_texts(given: Sequence[GivenPart], tree: Tree, output: Output = NOWHERE) -> JoinedText:
+    """Join descriptions that go to ``output``; raises UsageError and InputError, ProofError."""
     if len(given) < 2:
         raise UsageError("one description alone: give those that are joined to it, too")
     parts = [read_part(*it, tree, at == 0) for at, it in enumerate(given)]
     _check_parts(given, parts)
     known: dict[tuple[str, str], str] = {}
     with_names(known, parts[0])
+    if not kept.is_joined_whole(parts[0].data):
+        parts[0] = _with_references(parts[0], given[0].part, output, tree)
     mounted = [Mounted(parts[0], "", ZERO, "", parts[0].text)]
     data = parts[0].text
     notes: list[str] = []
     for it, part in zip(given[1:], parts[1:], strict=True):
         check_meeting(part, known)
-        data, made, told = _added(data, it.part, part, parts[0], tree)
+        data, made, told = _added(data, it.part, part, parts[0], tree, output)
         with_names(known, part)
         mounted.append(made)
         notes += told
@@ -190,7 +230,7 @@ def _check_parts(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
 
 
 def _added(
-    data: bytes, spec: Part, part: ReadPart, first: ReadPart, tree: Tree
+    data: bytes, spec: Part, part: ReadPart, first: ReadPart, tree: Tree, output: Output
 ) -> tuple[bytes, Mounted, Sequence[str]]:
     """Return the text with one more part, the part in place, and notes."""
     joined = collect(read_document(data, JOINED), tree)
@@ -199,19 +239,20 @@ def _added(
     names = other_looks(joined.document.root, part)
     word = word_of(part.name, part.prefix)
     text = prefixed(part.text, part.file, word, names)
-    part = part._replace(inventory=collect(read_document(text, part.file), tree))
+    part = _with_references(part._replace(text=text), spec, output, tree)
     root, spans = part.inventory.document.root, Spans(part.inventory.document)
     start, end = spans.inside(root)
     once, mount = said_once(joined, part.inventory), fixed(part, spec, spans)
     if mount.joint in robot.joint or mount.joint in part.robot.joint:
         what = f"joint {mount.joint!r} is there already; name the part otherwise"
         raise InputError(f"{part.file}: {what}")
-    system = one_system(joined, part.inventory) if spec.one_system else Once()
+    ids = Once(notes=tuple(same_ids(joined, part.inventory)))
+    system = one_system(joined, part.inventory) if spec.one_system else ids
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
-    made = _edited_text(text, [*edits, *own_spaces(joined.document, spans, edits)])
+    made = _edited_text(part.text, [*edits, *own_spaces(joined.document, spans, edits)])
     own = kept.KeptText(part.name, part.prefix, names, made)
-    more = kept.section(own, start, end + len(made) - len(text))
+    more = kept.section(own, start, end + len(made) - len(part.text))
     base = _edited_text(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     notes = (*mount.notes, *once.notes, *system.notes)

@@ -7,7 +7,8 @@ A part is in front of ``</robot>`` of the first one, between two comments:
     <!-- multibot end gripper TAIL -->
 
 ``HEAD`` is what its file has up to the end of its root's start tag, ``TAIL`` what it has from the end
-tag on. What was left out or changed is kept where it was, before the 0 or 1 elements in its place:
+tag on. What was left out or changed is kept where it was, before the 0 or 1 elements in its place; of
+an element that refers to another file than before, that name (2):
 
     <!-- multibot was 1 OLD -->
 
@@ -15,7 +16,7 @@ A comment holds no ``--``, and no colon before a blank: launch files pass a desc
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 from urllib.parse import quote, unquote
 
@@ -24,7 +25,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.steps.apply import Spans, cut
-from multibot_rewrite.description.steps.document import read_document, silenced
+from multibot_rewrite.description.steps.document import read_document, silenced, value_slot
 
 _BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
 # No comment holds two dashes.
@@ -34,7 +35,7 @@ _PART = lazy_compile(
 )
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
-_WAS = lazy_compile(rb"<!-- multibot was ([01]) (" + _INSIDE + rb") -->")
+_WAS = lazy_compile(rb"<!-- multibot was ([012]) (" + _INSIDE + rb") -->")
 _OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was) ")
 _MARKS = lazy_compile(
     rb"  <!-- multibot (?:base %b-->\n|part %b-->)|<!-- multibot (?:was %b-->|end %b-->\n)"
@@ -73,6 +74,24 @@ def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
     return Edit(start, end, kept + new, None)
 
 
+def path_edits(spans: Spans, element: _Element, new: bytes) -> Iterator[Edit]:
+    """Yield the edit that gives an element another path and keeps the old one, if one can."""
+    (start, end), slot = spans.of(element), path_slot(spans, element)
+    if slot:
+        source = spans.document.source
+        kept = b"<!-- multibot was 2 %s -->" % _escaped(source[slice(*slot)])
+        yield Edit(start, end, kept + source[start : slot[0]] + new + source[slot[1] : end], None)
+
+
+def path_slot(spans: Spans, element: _Element | None) -> tuple[int, int] | None:
+    """Return where the path is that an element refers to: in ``filename``, or its text."""
+    if element is None:
+        return None
+    name = "filename" if "filename" in element.attrib else ""
+    path = (element.get(name) if name else element.text) or ""
+    return value_slot(spans.document.source, spans.start_of(element), name, path.strip())
+
+
 def left_out(spans: Spans, element: _Element) -> Edit:
     """Return the edit that removes an element and keeps it in a comment."""
     return was(spans.start_of(element), spans.end_of(element), spans.text_of(element))
@@ -104,13 +123,7 @@ def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
 
 def sections(text: bytes, file: str) -> list[KeptText]:
     """Return the parts of a joined text, the first one first; raises InputError."""
-    # The text with what was left out or changed in its old place.
-    spans = Spans(read_document(text, file))
-    edits = [
-        Edit(it.start(), _end_of_replacement(spans, it, file), _unescaped(it[2]), None)
-        for it in _WAS.finditer(text)
-    ]
-    before = b"".join(cut(text, edits))
+    before = _as_it_was(text, file)
     mark = _BASE.search(before)
     if mark is None:
         raise InputError(f"{file}: multibot join did not make it; name the file that it wrote")
@@ -133,12 +146,32 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     return [KeptText(first.decode(), prefix.decode(), (), base), *found]
 
 
+def _as_it_was(text: bytes, file: str) -> bytes:
+    """Return the text with what was left out or changed in its old place."""
+    while _WAS.search(text):
+        spans, last = Spans(read_document(text, file)), 0
+        edits: list[Edit] = []
+        for mark in _WAS.finditer(text):
+            # What was changed in what was changed later comes back with that.
+            if mark.start() < last:
+                continue
+            last, old = _end_of_replacement(spans, mark, file), _unescaped(mark[2])
+            if mark[1] == b"2":
+                slot = path_slot(spans, spans.first_from(mark.end())) or (last, last)
+                old = text[mark.end() : slot[0]] + old + text[slot[1] : last]
+            edits.append(Edit(mark.start(), last, old, None))
+        text = b"".join(cut(text, edits))
+    return text
+
+
 def _end_of_replacement(spans: Spans, found: re.Match[bytes], file: str) -> int:
     if found[1] == b"0":
         return found.end()
     element = spans.first_from(found.end())
-    if element is None:
-        raise InputError(f"{file}: nothing follows a comment 'multibot was': join the parts again")
+    start = found.end() if element is None else spans.start_of(element)
+    if element is None or spans.document.source[found.end() : start].strip():
+        what = "what followed a comment 'multibot was' was edited by hand"
+        raise InputError(f"{file}: {what}: join the parts again")
     return spans.end_of(element)
 
 

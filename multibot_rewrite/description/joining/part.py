@@ -126,7 +126,7 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
             f"{file}: it is joined itself; give its parts here, or give it first, as it is"
         )
     inventory = collect(read_document(data, file), tree)
-    for what in _reasons_against_joining(inventory):
+    for what in reasons_against_joining(inventory):
         raise InputError(f"{file}: {what}")
     text = data
     findings: tuple[Finding, ...] = ()
@@ -146,7 +146,8 @@ def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> Re
     return ReadPart(name, file, part.prefix, data, text, inventory, robot, findings)
 
 
-def _reasons_against_joining(inventory: Inventory) -> Iterator[str]:
+def reasons_against_joining(inventory: Inventory) -> Iterator[str]:
+    """Yield why a description cannot be joined: it is no tree of links."""
     if inventory.format != "robot":
         yield f"it is <{inventory.document.root.tag}>; only URDFs can be joined"
         return

@@ -14,7 +14,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, Reach
-from multibot_rewrite.description.sources.expand import expand, expand_traced
+from multibot_rewrite.description.sources.expand import Expansion, expand, expand_traced
 from multibot_rewrite.description.sources.own_names import MARKS, ROBOT
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory, collect
@@ -136,12 +136,13 @@ def find_arguments(
     clock: Callable[[], float] = time.monotonic,
     reach: Reach = BOUNDED,
     wanted: Callable[[str], bool] = bool,
+    read: Expansion | None = None,
 ) -> XacroArguments:
     """Return the arguments of a xacro file whose name is ``wanted``; ``given`` are some values."""
-    # Raises InputError if the file does not expand with these.
+    # ``read`` is its expansion if that is known. Raises InputError if it does not expand.
     end = clock() + SECONDS
-    read = expand_traced(path, read_file(path), given, None, reach)
-    declared = {**_declared(read.sources), **given}
+    read = read or expand_traced(path, read_file(path), given, None, reach)
+    declared = {**declared_in(read.sources), **given}
     plain = _links_and_joints(collect(read_document(read.data, path), tree))
     found: dict[str, Argument] = {}
     for name, default in [it for it in declared.items() if wanted(it[0])][:MOST]:
@@ -169,14 +170,15 @@ def find_arguments(
 def declared_arguments(path: str, given: Mapping[str, str], reach: Reach) -> Mapping[str, str]:
     """Return the arguments that a xacro declares with their defaults; none if it does not expand."""
     with suppress(InputError):
-        return _declared(expand_traced(path, read_file(path), given, None, reach).sources)
+        return declared_in(expand_traced(path, read_file(path), given, None, reach).sources)
     return {}
 
 
-def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
+def declared_in(sources: Mapping[str, bytes]) -> dict[str, str]:
     """Return the ``<xacro:arg>`` of all files with their defaults; the first one counts."""
     found: dict[str, str] = {}
-    for file, data in sources.items():
+    # YAML that an expression loads may be among them.
+    for file, data in ((file, data) for file, data in sources.items() if b"<" in data):
         for element in read_document(data, file).root.iter("{*}arg"):
             if "xacro}" in str(element.tag):
                 found.setdefault(element.get("name", ""), element.get("default", ""))

@@ -6,6 +6,7 @@ looked up in the files as they were read here, so a wrong number leads nowhere e
 counts as written there only where the bytes read back as it."""
 
 import os
+import re
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -130,7 +131,9 @@ class Pieces:
     def of(self, element: int, attribute: str, value: str) -> tuple[Piece, ...]:
         """Return the pieces of an attribute, or of the text if it is empty; () if unknown."""
         found, at = [], 0
-        for row in self._rows_by_value.get((element, attribute or TEXT_NODE), ()):
+        for row in self._rows_by_value.get(
+            (element, _without_namespace(attribute) or TEXT_NODE), ()
+        ):
             length = row[0]
             found.append(self._piece_of_row(value[at : at + length], row))
             at += length
@@ -142,7 +145,7 @@ class Pieces:
         numbers, words = self.trace.result.pieces, self.trace.result.words
         every = (numbers[at : at + EIGHT] for at in range(0, len(numbers), EIGHT))
         return lists_by_key(
-            ((element, words[attribute]), tuple(row))
+            ((element, _without_namespace(words[attribute])), tuple(row))
             for element, attribute, *row in every
             if 0 <= attribute < len(words)
         )
@@ -172,6 +175,12 @@ class Pieces:
         tag = source[start + 1 : tag_end(source, start)].split(None, 1)[0].rstrip(b"/>").decode()
         kind = _KINDS.get(tag, "parameter" if tag.startswith("xacro:") else LITERAL)
         return Piece(text, kind if as_is else EXPRESSION, name, begin, end)
+
+
+def _without_namespace(attribute: str) -> str:
+    """Return the name of an attribute, the same for ``gz:name`` and ``{uri}name``."""
+    local = re.split("[}:]", attribute)[-1]
+    return attribute if local == attribute else f":{local}"
 
 
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:

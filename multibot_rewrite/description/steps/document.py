@@ -211,13 +211,18 @@ def place_in(source: bytes, slot: tuple[int, int], value: str, at: int) -> int |
 
 
 def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
-    """Return where an attribute's value is; ``{uri}local`` matches with any prefix."""
+    """Return where the value of an attribute is, with any quotes, spaces and escapes."""
+    slot = written_slot(source, start, name)
+    return slot if slot and _reads_as(b'<a b="%s"/>', source[slice(*slot)], value) else None
+
+
+def written_slot(source: bytes, start: int, name: str) -> tuple[int, int] | None:
+    """Return where an attribute is, whatever its value; ``{uri}local`` matches with any prefix."""
     uri, _, local = name.encode().rpartition(b"}")
     there = attribute_slots(source, start)
     # Without a prefix a name is in no namespace.
     names = (it for it in there if it.endswith(b":" + local)) if uri else (local,)
-    slot = next((there[it] for it in names if it in there), None)
-    return slot if slot and _reads_as(b'<a b="%s"/>', source[slice(*slot)], value) else None
+    return next((there[it] for it in names if it in there), None)
 
 
 # A tag may have thousands of attributes.
