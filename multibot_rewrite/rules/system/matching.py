@@ -300,6 +300,7 @@ def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
     once = [it for it in latched if it not in again]
     volatile = _with_durability(ends.subscribers, DURABILITY[0])
     seeing = [it for it in volatile if is_viewer(it.node) and not is_hidden(it.node)]
+    seeing = seeing if ends.type != TF else []
     readers = nodes_of(at_work(volatile) or seeing)
     if once and readers and len(once) == len(ends.publishers):
         yield not_latched.finding(
