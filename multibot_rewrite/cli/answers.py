@@ -8,12 +8,11 @@ from __future__ import annotations
 import argparse
 import gc
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import redirect_stdout, suppress
 from difflib import SequenceMatcher
 from io import BytesIO, TextIOWrapper
 from multiprocessing.connection import Connection
-from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import OPEN_TEXTS
 from multibot_rewrite.base.config import configured_definitions
@@ -29,7 +28,8 @@ from multibot_rewrite.description.sources.processes import server
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.configured import configured, is_excluded, with_options
+from multibot_rewrite.lint.config import configured
+from multibot_rewrite.lint.config.baseline import beyond, read_baseline
 from multibot_rewrite.lint.failures import failure
 from multibot_rewrite.lint.files.included import set_among
 from multibot_rewrite.lint.files.named import descriptions_below
@@ -38,6 +38,8 @@ from multibot_rewrite.refactor.rename import Place, find_places, rename_symbol
 from multibot_rewrite.rules.settings import Settings
 
 _LINTED = (*DESCRIPTIONS, SRDF, WORLD, *(kind for kind, _ in BESIDE))
+# Each with its file, the first line, the one after the last, from 0, and the text instead of them.
+Edits = list[tuple[str, int, int, str]]
 _ENDS = (".urdf", ".xacro", ".srdf", ".sdf")
 
 
@@ -58,13 +60,16 @@ def answer(connection: Connection) -> None:
 def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
     """Return the findings of a file; none for a file of a kind that is not linted."""
     try:
-        kind, settings = recognised(read_file(path)), _settings(options, path)
-        if settings and kind == FLEET:
-            fleet = closed_plan(plan_fleet(read_fleet(path, settings.distro, os.environ)))
+        kind, config = recognised(read_file(path)), _configured(options, path)
+        if config and kind == FLEET:
+            fleet = closed_plan(plan_fleet(read_fleet(path, config.settings.distro, os.environ)))
             found = (*fleet.table.problems, *fleet.gaps)
             return [it if it.file else it._replace(file=path) for it in found]
-        is_linted = settings and (kind in _LINTED or path.endswith(_ENDS))
-        return lint_file(path, settings) if settings and is_linted else ()
+        if not config or (kind not in _LINTED and not path.endswith(_ENDS)):
+            return ()
+        findings, baseline = lint_file(path, config.settings), config.baseline
+        known = read_baseline(baseline) if baseline else {}
+        return beyond(findings, known, baseline, [path])[0] if known else findings
     except RewriteRefused as error:
         return error.findings
     except MultibotError as error:
@@ -72,32 +77,25 @@ def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
         return [failure(path, own, Settings())]
 
 
-def _settings(options: argparse.Namespace, path: str) -> Settings | None:
-    """Return the settings for a file; None for one that the configuration leaves out."""
-    config = with_options(configured(path, options.config), **given(options))
+def _configured(options: argparse.Namespace, path: str) -> configured.Configured | None:
+    """Return the configuration for a file; None for one that it leaves out."""
+    alone = configured.configured(path, options.config)
+    config = configured.with_options(alone, **given(options))
     settings, _ = of_release(options.distro or config.distro, config.settings, [path])
-    return None if is_excluded(path, config) else set_among([path], settings)
+    config = config._replace(settings=set_among([path], settings))
+    return None if configured.is_excluded(path, config) else config
 
 
-class LineEdit(NamedTuple):
-    """The lines from ``start`` on, before ``end``, and the text that replaces them."""
-
-    start: int
-    end: int
-    text: str
+def fixed(options: argparse.Namespace, path: str) -> Edits:
+    """Return the edits that fix all in a file that is safe to fix."""
+    config, text = _configured(options, path), read_file(path)
+    return _edits(path, text, fix(path, text, config.settings)[0]) if config else []
 
 
-def fixed(options: argparse.Namespace, path: str) -> Mapping[str, Sequence[LineEdit]]:
-    """Return the edits that fix all in a file that is safe to fix, by its path."""
-    settings, text = _settings(options, path), read_file(path)
-    return {path: _line_edits(text, fix(path, text, settings)[0])} if settings else {}
-
-
-def _line_edits(before: bytes, after: bytes) -> list[LineEdit]:
-    """Return the edits of lines that turn one text into another."""
+def _edits(path: str, before: bytes, after: bytes) -> Edits:
     old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
     return [
-        LineEdit(start, end, b"".join(new[first:last]).decode())
+        (path, start, end, b"".join(new[first:last]).decode())
         for tag, start, end, first, last in SequenceMatcher(None, old, new).get_opcodes()
         if tag != "equal"
     ]
@@ -120,14 +118,12 @@ def places(options: argparse.Namespace, path: str, at: tuple[int, int]) -> list[
     return find_places(path, at, _folder(path), *_definitions(options, path))
 
 
-def renamed(
-    options: argparse.Namespace, path: str, place: Place, new: str
-) -> Mapping[str, Sequence[LineEdit]]:
-    """Return the edits of ``multibot rename``, by the paths of the files."""
+def renamed(options: argparse.Namespace, path: str, place: Place, new: str) -> Edits:
+    """Return the edits of ``multibot rename``."""
     definitions, distro = _definitions(options, path)
     name, kind, folder = place.name, place.kind, _folder(path)
     made = rename_symbol(name, new, folder, kind=kind, definitions=definitions, distro=distro)
-    return {file: _line_edits(made.before[file], text) for file, text in made.after.items()}
+    return [it for file, text in made.after.items() for it in _edits(file, made.before[file], text)]
 
 
 def _definitions(options: argparse.Namespace, path: str) -> tuple[tuple[str, ...], str]:

@@ -57,14 +57,16 @@ STDIN = "-"
 _TELLING = (".urdf", ".xacro", ".sdf", "_planning.yaml")
 CRASHED = "MB001"
 _LISTS = ("select", "ignore", "robots", "roots", "target", "definitions")
+_NOT_FOR_EDITORS = ("fix", "diff", "output", "write_baseline", "changed_since")
 _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 
 def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
     if options.lsp:  # a program of its own; pygls is an extra
-        if plain_words(options) or options.fix:
-            raise UsageError("--lsp lints what an editor opens: leave out PATH and --fix")
+        if plain_words(options) or any(getattr(options, it) for it in _NOT_FOR_EDITORS):
+            others = ", ".join(f"--{it.replace('_', '-')}" for it in _NOT_FOR_EDITORS)
+            raise UsageError(f"--lsp lints what an editor opens: leave out PATH, {others}")
         return int(import_module("multibot_rewrite.cli.lsp").run(options))
     check_use(options)
     config = configured(".", options.config)

@@ -11,11 +11,12 @@ import asyncio
 import gc
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from io import StringIO
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
+from operator import attrgetter
 from typing import Any
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
@@ -38,8 +39,11 @@ except ImportError as error:
 PAUSE, LONGEST = 0.03, 60.0
 # How many files are linted at once: on saving, all open ones.
 _AT_ONCE = max(4, os.cpu_count() or 1)
+_OWN = "file:", "untitled:"
 _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
+_Counter = Callable[[int, int], lsp.Position]
+_WHERE = attrgetter("line", "column", "code", "message")
 # A tag with its bracket, an attribute with its value, or a word.
 _MARKED = re.compile(r"</?[\w:.-]+|[\w:.-]+\s*=\s*(?:\"[^\"]*\"?|'[^']*'?)|[^\s<>]+")
 # The ends of a word around the cursor.
@@ -61,8 +65,11 @@ class Server(LanguageServer):
         self.slots = asyncio.Semaphore(_AT_ONCE)
 
     def opened(self) -> dict[str, TextDocument]:
-        """Return the open documents by their URIs as the editor writes them."""
-        return {it.uri: it for it in self.workspace.text_documents.values()}
+        """Return the open documents by their URIs as the editor writes them.
+
+        An older text of a file (``git:``) is none: its path is that of the file."""
+        documents = self.workspace.text_documents.values()
+        return {it.uri: it for it in documents if it.uri.startswith(_OWN)}
 
     async def ask(self, function: Callable[..., Any], uri: str, *words: Any) -> Any:
         """Return the answer of a function of ``answers``; None for none, an error is shown."""
@@ -112,9 +119,9 @@ class Server(LanguageServer):
         for each in {uri, *(uris[it.file] for it in (*old, *found))}:
             document = self.workspace.get_text_document(each)
             # Once, however many uses of a macro or files that include it have the finding.
-            own = {_place(it): it for it in every[len(old) :] if uris[it.file] == each}
+            own = {_WHERE(it): it for it in every[len(old) :] if uris[it.file] == each}
             lines = _lines(document)
-            shown = [_diagnostic(document, lines, it) for it in own.values()]
+            shown = [_diagnostic(lines, _counter(document, lines), it) for it in own.values()]
             params = lsp.PublishDiagnosticsParams(each, shown, document.version)
             self.text_document_publish_diagnostics(params)
 
@@ -124,14 +131,17 @@ class Server(LanguageServer):
         known = (uri for uri, it in self.opened().items() if os.path.realpath(it.path) == real)
         return next(known, None) or from_fs_path(os.path.abspath(path)) or path
 
-    def edits_to(self, changes: Mapping[str, Sequence[answers.LineEdit]]) -> lsp.WorkspaceEdit:
+    def found_in(self, uri: str) -> list[Finding]:
+        """Return the findings in a file, without those in files that it includes."""
+        path = os.path.realpath(self.workspace.get_text_document(uri).path)
+        return [it for it in self.found.get(uri, ()) if os.path.realpath(it.file) == path]
+
+    def edits_to(self, changes: answers.Edits) -> lsp.WorkspaceEdit:
         """Return the edits of files' lines as the editor takes them."""
-        edits: dict[str, Sequence[lsp.TextEdit]] = {}
-        for path, its in changes.items():
-            edits[self.uri_of(path)] = [
-                lsp.TextEdit(lsp.Range(lsp.Position(it.start, 0), lsp.Position(it.end, 0)), it.text)
-                for it in its
-            ]
+        edits: dict[str, list[lsp.TextEdit]] = {}
+        for path, start, end, text in changes:
+            where = lsp.Range(lsp.Position(start, 0), lsp.Position(end, 0))
+            edits.setdefault(self.uri_of(path), []).append(lsp.TextEdit(where, text))
         return lsp.WorkspaceEdit(edits)
 
     def locations(self, places: Iterable[Place]) -> list[lsp.Location]:
@@ -139,8 +149,8 @@ class Server(LanguageServer):
         found = []
         for file, its in lists_by_key((it.file, it) for it in places).items():
             document = self.workspace.get_text_document(self.uri_of(file))
-            lines = _lines(document)
-            ranges = (_range(document, lines, *it.start, *it.end) for it in its)
+            at = _counter(document, _lines(document))
+            ranges = (lsp.Range(at(*it.start), at(*it.end)) for it in its)
             found += [lsp.Location(document.uri, it) for it in ranges]
         return found
 
@@ -157,23 +167,16 @@ def _lines(document: TextDocument) -> Sequence[str]:
     return []
 
 
-def _range(
-    document: TextDocument, lines: Sequence[str], line: int, column: int, end: int, last: int
-) -> lsp.Range:
-    """Return a range as the editor counts: from 0, in its units."""
-    start, stop = lsp.Position(line - 1, column - 1), lsp.Position(end - 1, last - 1)
+def _counter(document: TextDocument, lines: Sequence[str]) -> _Counter:
+    """Return what makes of a line and column a position as the editor counts: from 0, in its units."""
     units = document.position_codec.position_to_client_units
-    return lsp.Range(units(lines, start), units(lines, stop))
+    return lambda line, column: units(lines, lsp.Position(line - 1, column - 1))
 
 
-def _place(it: Finding) -> tuple[int, int, str, str]:
-    return it.line, it.column, it.code, it.message
-
-
-def _diagnostic(document: TextDocument, lines: Sequence[str], it: Finding) -> lsp.Diagnostic:
+def _diagnostic(lines: Sequence[str], at: _Counter, it: Finding) -> lsp.Diagnostic:
     line, column = max(it.line, 1), max(it.column, 1)
     marked = _MARKED.match(next(iter(lines[line - 1 : line]), ""), column - 1)
-    where = _range(document, lines, line, column, line, (marked.end() if marked else column) + 1)
+    where = lsp.Range(at(line, column), at(line, (marked.end() if marked else column) + 1))
     message = ": ".join(filter(None, (it.robot, it.node, it.message)))
     text = "; ".join(filter(None, (message, it.hint)))
     severity = _SEVERITIES.get(it.level, lsp.DiagnosticSeverity.Information)
@@ -205,7 +208,7 @@ def _changed(params: Any) -> None:
 async def _hover(params: lsp.HoverParams) -> lsp.Hover | None:
     document = server.workspace.get_text_document(params.text_document.uri)
     word = document.word_at_position(params.position, _BEFORE, _AFTER).strip("/:?!-")
-    found, line = server.found.get(document.uri, ()), params.position.line + 1
+    found, line = server.found_in(document.uri), params.position.line + 1
     words = [word, *(it.code for it in found if it.line == line)]
     explained = await server.ask(answers.explain, document.uri, words)
     content = lsp.MarkupContent(lsp.MarkupKind.Markdown, f"```text\n{explained}\n```")
@@ -216,22 +219,18 @@ async def _hover(params: lsp.HoverParams) -> lsp.Hover | None:
 async def _actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
     document = server.workspace.get_text_document(params.text_document.uri)
     lines = range(params.range.start.line + 1, params.range.end.line + 2)
-    fixable = [it for it in server.found.get(document.uri, ()) if it.edits]
+    fixable = [it for it in server.found_in(document.uri) if it.edits]
     kinds = [_FIX_ALL] * bool(fixable) + [_FIX] * any(it.line in lines for it in fixable)
     asked = [it for it in kinds if it.startswith(tuple(params.context.only or [""]))]
     fixes = await server.ask(answers.fixed, document.uri) if asked else None
-    if fixes is None:
-        return []
-    edit = server.edits_to(fixes)
-    return [lsp.CodeAction("Fix all that urdf-lint can", it, edit=edit) for it in asked]
+    edit = server.edits_to(fixes or [])
+    return [lsp.CodeAction("Fix all that urdf-lint can", it, edit=edit) for it in asked if fixes]
 
 
 async def _places(params: Any) -> list[Place]:
     document = server.workspace.get_text_document(params.text_document.uri)
-    codec, lines = document.position_codec, _lines(document)
-    at = codec.position_from_client_units(lines, params.position)
-    cursor = at.line + 1, at.character + 1
-    return await server.ask(answers.places, document.uri, cursor) or []
+    at = document.position_codec.position_from_client_units(_lines(document), params.position)
+    return await server.ask(answers.places, document.uri, (at.line + 1, at.character + 1)) or []
 
 
 @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
@@ -239,12 +238,15 @@ async def _places(params: Any) -> list[Place]:
 async def _locations(params: Any) -> list[lsp.Location]:
     context = getattr(params, "context", None)  # that of references
     wanted = {False, context.include_declaration} if context else {True}
-    return server.locations(it for it in await _places(params) if it.declares in wanted)
+    places = [it for it in await _places(params) if it.declares in wanted]
+    # Robots of one package may each have the name: it is that of the file itself.
+    here = server.workspace.get_text_document(params.text_document.uri).path
+    own = [it for it in places if os.path.realpath(it.file) == os.path.realpath(here)]
+    return server.locations(places if context else own or places)
 
 
 @server.feature(lsp.TEXT_DOCUMENT_RENAME)
 async def _rename(params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    for place in (await _places(params))[:1]:
-        uri, new = params.text_document.uri, params.new_name
-        return server.edits_to(await server.ask(answers.renamed, uri, place, new) or {})
-    return None
+    uri, places = params.text_document.uri, await _places(params)
+    edits = places and await server.ask(answers.renamed, uri, places[0], params.new_name)
+    return server.edits_to(edits) if edits else None

@@ -121,6 +121,7 @@ WRONG: list[tuple[Sequence[str], str]] = [
     (["good.urdf", "--target", "usd"], "use one of mjcf"),
     (["good.urdf", "--diff"], "give both"),
     (["good.urdf", "--lsp"], "leave out PATH"),
+    (["--lsp", "--changed-since", "HEAD"], "leave out PATH, --fix"),
     (["good.urdf", "--fix", "--diff", "--output", "x"], "leave out --output"),
     (["good.urdf", "-"], "standard input is linted alone"),
     (["-", "--fix"], "standard input is linted alone"),

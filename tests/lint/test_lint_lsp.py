@@ -8,7 +8,8 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from pathlib import Path
+from contextlib import suppress
+from pathlib import Path, PosixPath
 
 import pytest
 from editor import Editor, applied, codes, edited
@@ -140,6 +141,24 @@ def test_a_file_of_no_known_kind_has_no_findings(editor: Editor, package: Path) 
         editor.close(package / name)
 
 
+def test_an_older_text_of_a_file_is_not_the_file(editor: Editor, package: Path) -> None:
+    """VS Code opens it beside the file, to compare them."""
+
+    class OfGit(PosixPath):
+        def as_uri(self) -> str:
+            return f"git:{super().as_uri().removeprefix('file://')}?%7B%7D"
+
+    path, wrong = (
+        package / "urdf" / "rover.urdf",
+        URDF.replace('child link="wheel"', 'child link="w"'),
+    )
+    assert "MB202" not in codes(editor.open(path, URDF))
+    assert editor.open(OfGit(path), wrong) == []
+    assert "MB202" not in codes(editor.change(path, URDF))
+    for it in (path, OfGit(path)):
+        editor.close(it)
+
+
 def test_columns_are_those_of_the_editor(editor: Editor, package: Path) -> None:
     """A character beyond the basic plane counts twice in UTF-16; U+2028 ends no line there."""
     path = package / "urdf" / "wide.urdf"
@@ -170,6 +189,8 @@ def test_a_fault_of_an_included_file_is_shown_in_it_as_it_is_open(
     editor.save(part)
     assert "MB202" in codes(editor.until(whole, "MB202"))
     assert {it.range.start.line for it in editor.shown[part.as_uri()]} >= {2}
+    # Its findings are explained in it, not at the same line of this file.
+    assert editor.hover(whole, whole.read_text(), "fixed") == ""
     editor.close(whole)
     editor.close(part)
 
@@ -311,6 +332,8 @@ def test_names_in_xacro_are_found_where_they_are_written(editor: Editor, tmp_pat
     assert editor.definition(path, MACRO, 'parent link="|base_link') == [
         ("wheels.urdf.xacro", 8, "base_link")
     ]
+    (tmp_path / "other.urdf").write_text(URDF)  # has a link of that name, too
+    assert [it[0] for it in editor.definition(path, MACRO, 'link name="|base_link')] == [path.name]
     # Put together of an argument: the tag that makes it.
     ((_, line, text),) = editor.definition(path, MACRO, 'child link="${side}|_wheel')
     assert (line, text) == (3, '<link name="${side}_wheel"/>')
@@ -370,7 +393,8 @@ def test_a_process_that_dies_ends_no_server(editor: Editor, package: Path) -> No
     path, server = package / "urdf" / "killed.urdf", editor.client._server
     assert server and "MB202" not in codes(editor.open(path, URDF))
     for pid in [pid for own in children(server.pid) for pid in (*children(own), own)]:
-        os.kill(pid, signal.SIGKILL)
+        with suppress(ProcessLookupError):  # one that has answered is being ended
+            os.kill(pid, signal.SIGKILL)
     assert editor.hover(path, URDF, "<|joint") == ""  # the process that waited for it is gone
     wrong = URDF.replace('child link="wheel"', 'child link="whel"')
     assert "MB202" in codes(editor.change(path, wrong))
@@ -396,6 +420,10 @@ def test_configuration_and_options_hold(package: Path, tmp_path: Path) -> None:
     with edited(tmp_path, "--select", "MB2,MB6") as editor:
         assert codes(editor.open(tmp_path / "a.urdf", wrong)) == ["MB202"]
         assert editor.open(tmp_path / "left" / "a.urdf", wrong) == []
+        (tmp_path / "urdf-lint.toml").write_text('ignore = ["MB610"]\nbaseline = "known.json"\n')
+        (tmp_path / "b.urdf").write_text(wrong)
+        urdf_lint([str(tmp_path / "b.urdf"), "--write-baseline", str(tmp_path / "known.json")])
+        assert codes(editor.open(tmp_path / "b.urdf", wrong)) == []
         (tmp_path / "urdf-lint.toml").write_text('ignor = ["MB610"]\n')
         (found,) = editor.change(tmp_path / "a.urdf", URDF)
         assert "urdf-lint.toml: unknown key 'ignor'" in found.message
