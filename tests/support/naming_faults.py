@@ -108,6 +108,14 @@ def data_rows() -> tuple[Fault, ...]:
             "MG320", ("robot1 and robot2", "/scan"),
         ),
         Fault(
+            "the costmaps of both robots read /scan", nav,
+            both(*(
+                added(f"/{it}/local_costmap/local_costmap", (SUBSCRIBES, "/scan", SCAN))
+                for it in ("robot1", "robot2")
+            )),
+            "MG320", ("robot1 and robot2 all read /scan", "/scan:=/robot1/scan"),
+        ),
+        Fault(
             "both map servers on /map", nav, in_each("map", "/map"),
             "MG320", ("map_server", "/map"),
         ),

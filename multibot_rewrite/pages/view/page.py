@@ -102,17 +102,16 @@ def _scene_json(scene: ShownScene, meshes: Meshes) -> dict[str, Any]:
         "meshes": [
             {"missing": it}
             if isinstance(it, str)
-            else {"v": _base64(it.vertices), "f": _base64(it.faces), "c": _base64(it.colours)}
+            else {
+                key: base64.b64encode(data).decode()
+                for key, data in zip("vfc", (it.vertices, it.faces, it.colours), strict=True)
+            }
             for it in meshes.values()
         ],
         "robots": [_robot_json(it, numbers, meshes) for it in scene.robots],
         "trees": scene.trees,
         "same": [METRES, DEGREES],
     }
-
-
-def _base64(data: bytes) -> str:
-    return base64.b64encode(data).decode()
 
 
 def _robot_json(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:

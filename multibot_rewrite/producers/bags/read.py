@@ -9,7 +9,7 @@ from __future__ import annotations
 import errno
 import os
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from functools import partial
 from itertools import chain, islice
 from math import inf
@@ -163,24 +163,18 @@ def _transforms(
     """Return the last transforms on a tf topic; and whether some could not be read."""
     found: dict[tuple[str, str], Edge] = {}
     paces: dict[tuple[str, str], Pace] = {}
-    static = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic
+    static, cut = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic, False
     for read, data in enumerate(_first_messages(reader, connections, TRANSFORMS + 1)):
         message = read_tf(data) if read < TRANSFORMS else None
-        if message is None:
-            return _paced(found, paces), True
+        if cut := message is None:
+            break
         for it in message.transforms:
             edge = (it.child_frame_id, it.header.frame_id)
             last = numbers_of(it.transform)
             found[edge] = Edge(*edge, topic, static, (RECORDER,), transform=last)
             paces[edge] = paces.get(edge, Pace()).after(it.header.stamp)
-    return _paced(found, paces), False
-
-
-def _paced(
-    found: Mapping[tuple[str, str], Edge], paces: Mapping[tuple[str, str], Pace]
-) -> Collection[Edge]:
-    """Return the transforms with how often each came."""
-    return [it if it.static else it._replace(rate=paces[key].rate()) for key, it in found.items()]
+    rates = {key: 0.0 if static else pace.rate() for key, pace in paces.items()}
+    return [it._replace(rate=rates[key]) for key, it in found.items()], cut
 
 
 def _qos(given: Any) -> Qos:

@@ -55,7 +55,8 @@ def _unread_topic(seen: Index, end: End) -> Ends | None:
     """Return the robot's one unread topic of the end's type, or with a word in common; or None."""
     robot = seen.robot(end.name)
     # Does its node read the same of another robot, from which it comes?
-    merges = _has_another(seen, end) and not any(
+    others = _names_read(seen).get((end.node, end.kind, end.type), set()) - {end.name}
+    merges = others and not any(
         it.name != end.name and seen.plain(it.name) == seen.plain(end.name)
         for it in seen.by_node[end.node]
         if it.role == SUBSCRIBES and it.name in seen.published
@@ -142,7 +143,8 @@ def _topic_with_data(seen: Index, end: End) -> Ends | None:
     if end.name.startswith(f"{end.node}/") or (outside and kind != words.DESCRIPTION):
         return None
     # One that merges need not have all; what is not the robot's own may be of nobody's.
-    if _has_another(seen, end) or seen.robot(end.name) != seen.robot(end.node):
+    others = _names_read(seen).get((end.node, end.kind, end.type), set()) - {end.name}
+    if others or seen.robot(end.name) != seen.robot(end.node):
         return None
     mine = seen.robot(end.node) or seen.robot(end.name)
     sent = _sent(seen).get((kind, mine), ()) if kind else ()
@@ -156,11 +158,6 @@ def _topic_with_data(seen: Index, end: End) -> Ends | None:
     unread = akin if len(akin) == 1 else unread
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
     return _only_one(given if several and unread else unread or ([] if several else same))
-
-
-def _has_another(seen: Index, end: End) -> bool:
-    """Return whether a node reads another topic of that type which is sent."""
-    return bool(_names_read(seen).get((end.node, end.kind, end.type), set()) - {end.name})
 
 
 @once

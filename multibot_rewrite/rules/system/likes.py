@@ -31,8 +31,6 @@ from multibot_rewrite.system.words import is_viewer, last_word
 # Fewer nodes in common say nothing.
 _ENOUGH = 3
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
-# It loads controllers into its process.
-_LOADER = "/controller_manager"
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
 # Node, kind, role and name, without the robot's.
@@ -317,10 +315,10 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
 
 def _loader(seen: Index, node: str, robot: str) -> str:
     """Return the controller_manager in a node's process where the robot has none, else the node."""
-    each = nodes_of_each(seen)
-    loader = each[seen.robot(node)].get(_LOADER, node)
+    each, plain = nodes_of_each(seen), "/controller_manager"
+    loader = each[seen.robot(node)].get(plain, node)
     together = seen.node[node].process == seen.node[loader].process != ""
-    return loader if together and _LOADER not in each[robot] else node
+    return loader if together and plain not in each[robot] else node
 
 
 def _never_sent(seen: Index) -> Iterator[Finding]:

@@ -16,14 +16,7 @@ from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_se
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, ZENOH, End, Qos
-from multibot_rewrite.system.words import (
-    DESCRIPTION,
-    JOINTS,
-    MAP,
-    is_hidden,
-    is_viewer,
-    last_word,
-)
+from multibot_rewrite.system.words import DESCRIPTION, JOINTS, MAP, is_viewer, last_word
 
 # The words of each policy, the weakest first; any other word does not say what is in force.
 RELIABILITY = ("BEST_EFFORT", "RELIABLE")
@@ -299,7 +292,8 @@ def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
     again = {it.node for it in read if it.type != JOINTS and words.is_of_a_body(it.type)}
     once = [it for it in latched if it not in again]
     volatile = _with_durability(ends.subscribers, DURABILITY[0])
-    seeing = [it for it in volatile if is_viewer(it.node) and not is_hidden(it.node)]
+    seeing = [it for it in volatile if is_viewer(it.node) and not words.is_hidden(it.node)]
+    seeing = seeing if ends.type != TF else []
     readers = nodes_of(at_work(volatile) or seeing)
     if once and readers and len(once) == len(ends.publishers):
         yield not_latched.finding(

@@ -131,10 +131,12 @@ def with_more_names(
             verb = "is" if len(names) == 1 else "are"
             node = state_publisher(plan, robot)
             sender = node or f"the robot_state_publisher of {robot.name}"
+            # That publisher has no odometry.
+            moving = "odom" in map(seen.plain_frame, names)
             cause = Cause(
                 f"frame_prefix of {sender} is {added!r}, or tf_frame_prefix_enable of a controller (on"
                 " by default), on top of a rewritten description: set them to '' and false",
-                settings=(Setting(node, "frame_prefix", ""),) if node else (),
+                settings=(Setting(node, "frame_prefix", ""),) if node and not moving else (),
             )
             frames = f"frame{'s' * (len(names) > 1)} {shorten(names)}"
             yield f"{frames} {verb} planned without {added!r}", cause, robot, names

@@ -26,19 +26,32 @@ def own_names(seen: Index, ends: Ends, robots: Sequence[str]) -> Cause:
         return Cause(f"{shorten(outside)} sends it to all robots: {one} for each, in its namespace")
     users = nodes_of((*ends.publishers, *ends.subscribers))
     owner, plain = seen.robot(ends.name), seen.plain(ends.name)
-    spaces = {it: it.rpartition("/")[0] for it in users if seen.robot(it) not in ("", owner)}
-    remaps = (Remap(it, ends.name, f"{space}{plain}") for it, space in spaces.items() if space)
+    spaces = {it: _space(seen, it) for it in users if seen.robot(it) not in ("", owner)}
+    remaps = [Remap(it, ends.name, f"{space}{plain}") for it, space in spaces.items() if space]
     if owner:
-        return names_another(and_then(robots_of(seen, spaces)), owner, [*remaps])
+        return names_another(and_then(robots_of(seen, spaces)), owner, remaps)
     readers = [] if NO_NAMESPACE in robots else outsiders(seen, ends.subscribers)
     own = "each robot needs its own: write a relative name in the code or parameters of these nodes"
     if readers:
         return Cause(f"{own}; then {shorten(readers)} has to read those of all robots")
+    rule = f"{ends.name}:={ends.name.strip('/')} in its robot's namespace"
+    # Relative to the namespace of the node.
+    if below := next(
+        (it for it in remaps if it.new != f"{it.node.rpartition('/')[0]}{plain}"), None
+    ):
+        rule = f"with its robot's name, such as {below.old}:={below.new}"
     return Cause(
-        f"{own}; or give each that uses it the rule {ends.name}:={ends.name.strip('/')} in its robot's"
-        " namespace (--ros-args -r, remappings= in the launch file)",
+        f"{own}; or give each that uses it the rule {rule} (--ros-args -r, remappings= in the launch"
+        " file)",
         remaps=tuple(remaps),
     )
+
+
+def _space(seen: Index, node: str) -> str:
+    """Return the namespace of a node's robot: a costmap has one of its own below it."""
+    words_ = node.split("/")
+    above = ("/".join(words_[:at]) for at in range(2, len(words_)))
+    return next((it for it in above if seen.robot(f"{it}/x") == seen.robot(node)), "")
 
 
 def outsiders(seen: Index, ends: Iterable[End]) -> list[str]:

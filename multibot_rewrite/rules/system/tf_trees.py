@@ -97,9 +97,9 @@ def no_odometry(seen: Index, robot: str, odom: str, root: str) -> str:
     if other := sent_elsewhere(seen, robot, odom, root):
         return f"{other.publishers[0]} sends {odom} -> {root} on {other.topic}: bring it to tf, too"
     plain = seen.plain_frame(odom), seen.plain_frame(root)
-    for it in seen.sent:
+    for it in (it for it in seen.sent if seen.frame_robot(it.child) in ("", robot)):
         if (seen.plain_frame(it.parent), seen.plain_frame(it.child)) == plain:
-            return f"{it.node} sends {it.parent} -> {it.child}: use one name for each frame"
+            return f"{it.parent} -> {it.child} is sent: use one name for each frame"
     return f"no node sends {odom} -> {root}: is odometry started, are its frames the same?"
 
 

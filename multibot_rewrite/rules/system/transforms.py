@@ -39,7 +39,8 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
     """Yield frames with two parents; the cause names the nodes that may have sent them."""
     for tree in seen.trees:
         edges = lists_by_key((edge.child, edge) for edge in tree.edges)
-        for child, parents in _parents_by_child(tree).items():
+        above = sets_by_key((edge.child, edge.parent) for edge in tree.edges)
+        for child, parents in above.items():
             if len(parents) < 2:
                 continue
             both = and_then(sorted(parents))
@@ -52,10 +53,6 @@ def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
             yield frame_with_two_parents.finding(
                 message, cause, robot=robot, names=(child,), **last_place(own)
             )
-
-
-def _parents_by_child(tree: Tree) -> dict[str, set[str]]:
-    return sets_by_key((edge.child, edge.parent) for edge in tree.edges)
 
 
 def _senders_of(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
@@ -187,7 +184,7 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
     """Report each circle once."""
     for tree in seen.trees:
         edges = lists_by_key((edge.child, edge) for edge in tree.edges)
-        for circle in _circles(_parents_by_child(tree)):
+        for circle in _circles(sets_by_key((it.child, it.parent) for it in tree.edges)):
             around = [*pairwise((*circle, circle[0]))]
             way = " -> ".join((*circle, circle[0]))
             message = f"the transforms on {tree.topic} go round in a circle: {way}"
@@ -236,7 +233,8 @@ def _take_away(
 def static_and_moving(seen: Index) -> Iterator[Finding]:
     """Yield transforms that are sent as static and as moving; two parents are another finding."""
     for tree in seen.trees:
-        several = {child for child, parents in _parents_by_child(tree).items() if len(parents) > 1}
+        above = sets_by_key((edge.child, edge.parent) for edge in tree.edges)
+        several = {child for child, parents in above.items() if len(parents) > 1}
         fixed = {it.child: it for it in tree.edges if "tf_static" in it.topic.split("/")}
         for edge in tree.edges:
             other = fixed.get(edge.child)
