@@ -41,17 +41,12 @@ def python(module: str, *words: str) -> list[str]:
 
 def isolated(module: str) -> list[str]:
     """Return the command that runs ``main`` of a module in a process without Python's variables."""
-    paths = json.dumps(search_path())
+    paths = json.dumps(start.safe_path(sys.path, os.getcwd()))
     quiet = ["-B"] if sys.dont_write_bytecode else []
     prefix = sys.pycache_prefix
     compiled = ["-X", f"pycache_prefix={os.path.abspath(prefix)}"] if prefix else []
     command = [sys.executable, "-I", *quiet, *compiled, "-X", "utf8"]
     return [*command, "-c", _ISOLATED.format(module), paths]
-
-
-def search_path() -> list[str]:
-    """Return where this process finds modules, without the current folder."""
-    return start.safe_path(sys.path, os.getcwd())
 
 
 def variables(given: Mapping[str, str] = os.environ) -> dict[str, str]:
