@@ -23,7 +23,7 @@ from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.description.readback.xml import plain
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments, names_robots
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.sources.whole import read_whole
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.proposal.searching import search
 
 # The repository, the commit that gave it a prefix, its packages if not all, and arguments.

@@ -29,6 +29,7 @@ READERS = {
     "cli/test_findings.py": ("junitparser",),
     "lint/test_lint_formats.py": ("junitparser", "markdown_it", "sarif_pydantic"),
     "lint/test_lint_hooks.py": ("junitparser",),
+    "lint/test_lint_lsp.py": ("pygls",),
 }
 UNREAD = [path for path, needs in READERS.items() if not all(map(find_spec, needs))]
 collect_ignore = [*UNREAD]

@@ -24,7 +24,7 @@ from multibot_rewrite.description.reports.explain import tag_path
 from multibot_rewrite.description.reports.suggest import Loaded, loaded_by
 from multibot_rewrite.description.rewriters.renaming import ResolvedName
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
-from multibot_rewrite.description.sources.whole import read_whole
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import Document, read_document, slot_values
 

@@ -55,13 +55,25 @@ _CONVERTED = ("int", "float", "bool", "timestamp")
 ANGLES: Mapping[str, Callable[[float], float]] = {"!degrees": radians, "!radians": float}
 # A block list or mapping is indented more than the one around it, or the one around that.
 _INDENTED = rf"[ \t\-?:]{{{MAX_DEPTH // 2}}}"
+# A list or mapping in brackets that holds no other one, and nothing where a bracket is a character.
+_IN_BRACKETS = r"[\[{][^]\[{}\"'#]*[]}]"
 _STEPS = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
 _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
+
+# The texts that an editor has open, by the files' real paths, in a process that answers one question.
+OPEN_TEXTS: dict[str, bytes] = {}
+
+
+def open_text(path: str) -> bytes | None:
+    """Return the text of a file as an editor has it open; None where none has."""
+    return OPEN_TEXTS.get(os.path.realpath(path)) if OPEN_TEXTS else None
 
 
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
     """Return the bytes of a file or device; raises OSError (also if too large) and ValueError."""
+    if (text := open_text(path)) is not None:
+        return text
     _refuse_pipe(path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.
@@ -257,7 +269,8 @@ def _with_digit_limit(construct: Any, kind: str) -> Any:
 def _check_bounds(text: str) -> None:
     """Raise yaml's ComposerError for what nests or repeats too much."""
     # A quick look, which suffices for nearly all files.
-    flow = text.count("[") + text.count("{")
+    flat = re.sub(_IN_BRACKETS, "", re.sub(_IN_BRACKETS, "", text))  # without two levels
+    flow = flat.count("[") + flat.count("{") + 2
     aliases = "*" in text and "&" in text
     if flow < MAX_DEPTH and not aliases and not re.search(_INDENTED, text):
         return

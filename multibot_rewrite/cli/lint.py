@@ -7,6 +7,7 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -56,11 +57,17 @@ STDIN = "-"
 _TELLING = (".urdf", ".xacro", ".sdf", "_planning.yaml")
 CRASHED = "MB001"
 _LISTS = ("select", "ignore", "robots", "roots", "target", "definitions")
+_NOT_FOR_EDITORS = ("fix", "diff", "output", "write_baseline", "changed_since")
 _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 
 def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
+    if options.lsp:  # a program of its own; pygls is an extra
+        if plain_words(options) or any(getattr(options, it) for it in _NOT_FOR_EDITORS):
+            others = ", ".join(f"--{it.replace('_', '-')}" for it in _NOT_FOR_EDITORS)
+            raise UsageError(f"--lsp lints what an editor opens: leave out PATH, {others}")
+        return int(import_module("multibot_rewrite.cli.lsp").run(options))
     check_use(options)
     config = configured(".", options.config)
     asked = options.distro or config.distro
@@ -69,9 +76,7 @@ def run(options: argparse.Namespace) -> int:
     alone = config
     config = with_options(config, **given(options))
     paths, unreadable = _files_to_lint(options, config)
-    told = release_chosen_here(asked)
-    said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
-    settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
+    settings, why = of_release(asked, config.settings, paths)
     config = config._replace(settings=settings)
     _check_selecting(options, paths)
     # Before the work: nothing that is linted is written over.
@@ -88,9 +93,18 @@ def run(options: argparse.Namespace) -> int:
 
         text = baseline_text(findings, options.write_baseline)
         write_files(options, [(options.write_baseline, text)])
-        note(options, f"{options.write_baseline}: {_counted(findings)} are known from now on")
+        counted = in_words(counts(findings)) or "no findings"
+        note(options, f"{options.write_baseline}: {counted} are known from now on")
         return DONE
-    return _conclude(options, config, paths, findings, said.why or why_here(asked))
+    return _conclude(options, config, paths, findings, why)
+
+
+def of_release(asked: str, settings: Settings, paths: Sequence[str]) -> tuple[Settings, str]:
+    """Return the settings for the release that the files are for, and why it is that one."""
+    told = release_chosen_here(asked)
+    said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
+    settings = settings._replace(distro=said.release, ros=ROS_2 if told else "")
+    return settings, said.why or why_here(asked)
 
 
 def _files_to_lint(
@@ -227,11 +241,8 @@ def _summary(
     fixable = sum(bool(it.edits) for it in findings)
     hint = f"; --fix fixes {fixable}" if fixable and not options.fix else ""
     old = f"; {stale} in the baseline are gone" if stale else ""
-    return f"{files}{changed}: {_counted(findings)}{hint}{old}"
-
-
-def _counted(findings: Sequence[Finding]) -> str:
-    return in_words(counts(findings)) or "no findings"
+    counted = in_words(counts(findings)) or "no findings"
+    return f"{files}{changed}: {counted}{hint}{old}"
 
 
 def check_use(options: argparse.Namespace) -> None:

@@ -76,7 +76,7 @@ def _printed_details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
         (
             it.role,
             it.name,
-            _types_text(it),
+            "; ".join((it.type, *(f"{type_} if {readable(when)}" for when, type_ in it.types))),
             it.parameter,
             readable(it.when),
             _source_text(it, folder),
@@ -98,11 +98,6 @@ def _printed_details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
         yield Grid(("frame in the code", "as", "source"), named)
     for it in facts.untold:
         yield f"not known: {_relative_place(it.text, folder)}"
-
-
-def _types_text(end: Endpoint) -> str:
-    """Return the type of an end, and its other types with their conditions."""
-    return "; ".join((end.type, *(f"{type_} if {readable(it)}" for it, type_ in end.types)))
 
 
 def _source_text(it: Endpoint | Param, folder: str = "") -> str:

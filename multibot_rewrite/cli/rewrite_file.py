@@ -21,8 +21,8 @@ from multibot_rewrite.cli.rewrite_use import (
     tell,
 )
 from multibot_rewrite.cli.usage import rewriting
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.description.sources.read import Source
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.library.one_file import RewrittenFile, rewrite_files
 from multibot_rewrite.related_files.named_file import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 

@@ -76,7 +76,9 @@ def _column_widths(grid: Grid, width: int | None) -> list[int] | None:
     """Return the width of each column; None if names would have to be cut."""
     columns = [*zip(grid.columns, *grid.rows, strict=True)]
     natural = [max(map(len, cells)) for cells in columns]
-    least = [max(len(it) for cell in cells for it in _cell_pieces(cell)) for cells in columns]
+    # A cell may be folded between its pieces.
+    pieces = ([it for cell in cells for it in _PIECE.findall(cell)] for cells in columns)
+    least = [max((len(it.rstrip()) for it in own), default=0) for own in pieces]
     room = sum(natural) if width is None else width - len(GAP) * (len(columns) - 1)
     if sum(least) > room:
         return None
@@ -87,11 +89,6 @@ def _column_widths(grid: Grid, width: int | None) -> list[int] | None:
         least[at] += more
         left -= more
     return least
-
-
-def _cell_pieces(cell: str) -> list[str]:
-    """Return the parts of a cell between which it may be folded."""
-    return [it.rstrip() for it in _PIECE.findall(cell) if it] or [""]
 
 
 def _folded_cell(cell: str, width: int) -> list[str]:

@@ -16,9 +16,8 @@ from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.rosnames import check_robot_names
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.rewriters.model_namespaces import given_topics, words_of
-from multibot_rewrite.description.sources.job import Job, read_jobs
+from multibot_rewrite.description.sources.job import Job, read_jobs, read_whole
 from multibot_rewrite.description.sources.read import Source
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.related_files.context import Context, make_context
 from multibot_rewrite.related_files.formats import kind_alone, read_named, rewrite_alone
 from multibot_rewrite.related_files.named_file import NamedFile

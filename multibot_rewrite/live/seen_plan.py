@@ -6,9 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_BY_EVERY_NODE, WORLD_FRAMES
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, TF_TOPICS
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.live.diagnose import Diagnosis
+from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.records import Edge, End, Node, Robot, System
 from multibot_rewrite.system.tf_copies import tree_topic
@@ -19,12 +21,16 @@ NAMELESS = GuessedRobot("robot1", "")
 
 
 def seen_plan(seen: Diagnosis) -> System:
-    """Return the plan: all nodes but tools, all names but what every node has."""
+    """Return the plan: all nodes but tools, all names but what every node has, and no errors."""
     nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
     robots = {_own_name(it): it for it in robots_to_plan(seen)}
     names = {mine: it.name for mine, it in robots.items()}
     whose = {node: seen.whose.robot(node) for node in nodes}
+    # What an error is about is nobody's plan: a check against this one finds it again.
+    excused = (it for it in seen.findings if it.level == ERROR and RULES[it.code].options["meant"])
+    wrong = {(it.node, name) for it in excused for name in it.names}
     ends = (it for it in seen.graph.ends if it.node in whose and "/_" not in it.name)
+    ends = (it for it in ends if (it.node, it.name) not in wrong)
     made = (
         End(it.kind, it.role, it.name, it.type, node=it.node, code_name=seen.whose.plain(it.name))
         for it in ends

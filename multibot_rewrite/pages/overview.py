@@ -40,7 +40,7 @@ class _Box(NamedTuple):
 def overview(robots: Sequence[Tile], crossings: Sequence[Crossing], shared: Iterable[str]) -> str:
     """Return the picture of the robots; ``shared`` are the nodes of no robot."""
     below = list(_shared_tiles(crossings, list(shared)))
-    in_row, _, tall, gap = _grid_of(len(robots))
+    _, in_row, _, tall, gap = next(it for it in SIZES if len(robots) <= it[0])
     middle = -(-len(robots) // in_row) * (tall + gap) if below else 0
     places = {**_boxes_in_rows(robots, 0), **_boxes_in_rows(below, middle)}
     tiles = (*robots, *below)
@@ -91,13 +91,9 @@ def _shared_tiles(crossings: Sequence[Crossing], shared: Sequence[str]) -> Itera
         yield Tile(NO_ROBOT, NO_ROBOT, ", ".join(names), "#shared", "bad")
 
 
-def _grid_of(number: int) -> tuple[int, int, int, int]:
-    """Return for a number of robots the columns, and width, height and gap of the boxes."""
-    return next(size[1:] for size in SIZES if number <= size[0])
-
-
 def _boxes_in_rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
-    columns, wide, high, gap = _grid_of(len(tiles))
+    # For so many robots the columns, and width, height and gap of the boxes.
+    _, columns, wide, high, gap = next(it for it in SIZES if len(tiles) <= it[0])
     cell = WIDTH / min(columns, max(len(tiles), 1))
     return {
         tile.key: _Box(

@@ -99,7 +99,9 @@ def held_by(name: str, text: str) -> str:
         return DEVICE if numbered or is_of_network(text) else _kind_of_value(text)
     if word == "port" or word.endswith("_port"):
         return COMPUTER if text.isdecimal() and int(text) >= _FREE_PORTS else _kind_of_value(text)
-    return COMPUTER if text and word in _data()["written"] else _kind_of_value(text)
+    numbered = text.isdecimal() and word in _data()["numbered"]
+    opened = numbered or (text and word in _data()["written"])
+    return COMPUTER if opened else _kind_of_value(text)
 
 
 def _kind_of_value(text: str) -> str:

@@ -22,7 +22,7 @@ from multibot_rewrite.system.words import is_viewer
 # A robot to read a launch file for.
 ANY = "robot1"
 # For each launch file.
-_SECONDS = 10.0
+_SECONDS = 20.0
 # Names of parameters that are shown of one process.
 _SHOWN = 3
 _DESCRIPTION = "robot_description"

@@ -25,6 +25,8 @@ from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
+from multibot_rewrite.description.sources.trace import WrittenAt
+from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.description.steps.renames import make_renames
 from multibot_rewrite.library.one_file import names_in_file
 from multibot_rewrite.refactor.launch_argument import literal_parameters
@@ -53,6 +55,7 @@ from multibot_rewrite.refactor.source_edits import (
     spans,
 )
 from multibot_rewrite.related_files.named_file import NamedFile
+from multibot_rewrite.related_files.names.rename_map import KINDS as OF_FILES
 
 # What a name of a kind may be called where it is used: a link's is that of a frame.
 KINDS: Mapping[str, tuple[str, ...]] = {
@@ -189,20 +192,24 @@ def _to_edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceE
     """Yield the edits of sources that make the changes; raises InputError where none can."""
     document = it.inventory.document
     for change in changes:
-        if it.read is None:
-            span = next(spans(document, [change]))
-            if span is None:
-                where = place(it.path, document.source, document.starts[change.element])
-                raise InputError(
-                    f"{where}: {change.value!r} cannot be edited in place; write it as plain text"
-                )
-            yield SourceEdit(os.path.realpath(it.path), *span)
-            continue
-        found = source_edit(it.read, document, change)
+        found = _edit_of(it, change)
+        if found is None:
+            where = place(it.path, document.source, document.starts[change.element])
+            raise InputError(
+                f"{where}: {change.value!r} cannot be edited in place; write it as plain text"
+            )
         if isinstance(found, Composed):
             what = f"{found.place}: {found.value!r} cannot be renamed here: {found.why}"
             raise InputError(f"{what}; write the name out, or change what makes it by hand")
         yield found._replace(file=os.path.realpath(found.file))
+
+
+def _edit_of(it: Description, change: ValueEdit) -> SourceEdit | Composed | None:
+    """Return the edit that makes a change; None where escapes hide the value."""
+    if it.read:
+        return source_edit(it.read, it.inventory.document, change)
+    span = next(spans(it.inventory.document, [change]))
+    return span and SourceEdit(it.path, *span)
 
 
 def _changed_related_files(
@@ -246,12 +253,80 @@ def _files_with(
     """Yield path, bytes, names and offsets for each related file that has a name of these kinds."""
     urdf = next(path for path, found in changes.items() if found)
     described = next(it.inventory.document.source for it in package.descriptions if it.path == urdf)
+    for path, data, file in _related_files(package, described, name):
+        if starts := set(starts_of(file, (name,), kinds)):
+            yield path, data, file, starts
+
+
+def _related_files(
+    package: Package, described: bytes, name: str = ""
+) -> Iterator[tuple[str, bytes, NamedFile]]:
+    """Yield the related files with that text in them: their path, bytes, and names."""
     found = package.found
     for path in (*found.params, *found.rviz, *found.bridge, *found.moveit, *found.behavior_trees):
         data = read_bytes(path)
-        if name.encode() not in data:
-            continue
-        with suppress(MultibotError):
-            file = names_in_file(data, path, described)
-            if starts := set(starts_of(file, (name,), kinds)):
-                yield path, data, file, starts
+        if name.encode() in data:
+            with suppress(MultibotError):
+                yield path, data, names_in_file(data, path, described)
+
+
+class Place(NamedTuple):
+    """A name in a file, from ``start`` to ``end``: each line and column, from 1.
+
+    A name that a xacro puts together is at the tag that has it."""
+
+    file: str
+    start: tuple[int, int]
+    end: tuple[int, int]
+    kind: str
+    name: str
+    declares: bool
+
+
+def find_places(
+    path: str, at: tuple[int, int], folder: str, definitions: Iterable[str] = (), distro: str = ""
+) -> list[Place]:
+    """Return all places in ``folder`` of the name that is at line and column ``at`` of a file."""
+    tree = builtin_tree(tuple(definitions), release_here(distro))
+    package = read_package(folder, tree, Expanding(BOUNDED, {}))
+    urdf = next((it.inventory.document.source for it in package.descriptions), b"<robot/>")
+    files = (_places_in_file(path, data, it) for path, data, it in _related_files(package, urdf))
+    described = map(_places_in_description, package.descriptions)
+    places = list(dict.fromkeys(chain.from_iterable(chain(described, files))))
+    real = os.path.realpath(path)
+    here = (it for it in places if it.start <= at <= it.end and os.path.realpath(it.file) == real)
+    # Of a tag and a name in it, the name begins last; a declaration says more than a use.
+    found = max(here, key=lambda it: (it.start, it.declares), default=None)
+    return [it for it in places if found and (it.name, it.kind) == (found.name, found.kind)]
+
+
+def _kind_of(kinds: Iterable[str]) -> str:
+    """Return the first of ``KINDS`` that is one of these, "" for none."""
+    return next((own for kind in kinds for own, its in KINDS.items() if kind in its), "")
+
+
+def _places_in_description(it: Description) -> Iterator[Place]:
+    for claim, names in zip(it.inventory.claims, it.inventory.names, strict=True):
+        for name in names:
+            end = name.at + len(name.text)
+            change = change_of(it.inventory.document, claim, name.at, end, "")
+            found: SourceEdit | Composed | WrittenAt | None = _edit_of(it, change)
+            if isinstance(found, Composed):
+                found = it.read.origins.of(change.element) if it.read else None
+            kind = _kind_of((name.kind, *name.kinds[:1]))
+            if found and kind:
+                source, start = it.sources[found.file], found.start
+                last = found.end if isinstance(found, SourceEdit) else tag_end(source, start)
+                ends = locate(source, start), locate(source, last)
+                yield Place(found.file, *ends, kind, name.text, claim.site.role == "declares")
+
+
+def _places_in_file(path: str, data: bytes, file: NamedFile) -> Iterator[Place]:
+    mark = len(data) - len(file.text.encode())
+    for site in file.names:
+        kind = _kind_of((site.kind, *OF_FILES.get(site.kind, ())))
+        at = file.text.find(site.text, site.slot.start + site.at, site.slot.end)
+        if kind and at >= 0:
+            both = (len(file.text[:it].encode()) for it in (at, at + len(site.text)))
+            start, end = (locate(data, mark + it) for it in both)
+            yield Place(path, start, end, kind, site.text, False)

@@ -27,8 +27,8 @@ from multibot_rewrite.description.joining.semantic import (
 from multibot_rewrite.description.readback.meeting import meetings, said
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.description.sources.read import Source, SourceText, args_for, read_file
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.related_files.joined import (

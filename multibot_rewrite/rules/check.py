@@ -242,15 +242,11 @@ def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
 
 
 def _without_bridges(system: System, plan: System) -> System:
-    own = _domain_bridges(plan)
+    own = {it.name for it in plan.nodes if it.node_set == DOMAIN_BRIDGE}
     return system._replace(
         nodes=tuple(it for it in system.nodes if it.name not in own),
         ends=tuple(it for it in system.ends if it.node not in own),
     )
-
-
-def _domain_bridges(plan: System) -> set[str]:
-    return {it.name for it in plan.nodes if it.node_set == DOMAIN_BRIDGE}
 
 
 def _with_domain(it: Finding, number: int, plan: System, seen: Mapping[int, System]) -> Finding:
@@ -278,7 +274,7 @@ def in_domain(it: Finding, number: int) -> Finding:
 
 def _with_bridge_hint(it: Finding, plan: System) -> Finding:
     """Return a finding of a domain_bridge: if it is missing, or a topic in its file, as that."""
-    if it.node not in _domain_bridges(plan):
+    if (it.node, DOMAIN_BRIDGE) not in {(own.name, own.node_set) for own in plan.nodes}:
         return it
     if it.code == missing_endpoint.code:
         hint = f"the file of {DOMAIN_BRIDGE} has no such topic: build the fleet again"

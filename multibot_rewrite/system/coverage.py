@@ -129,14 +129,14 @@ def _details_in_words(held: Coverage) -> Iterator[str]:
     """Yield how many nodes are known, seen and silent, in words."""
     total = held.total
     if held.told and not total.unknown:
-        yield f"all known{_partly_known_in_words(total)}"
+        yield "all known" + f" ({total.partly} in part)" * bool(total.partly)
     elif held.told:
         alike = len({it[1:3] for it in held.robots}) == 1
         shown = held.robots[0] if alike else total
         whose = (f"{it.robot or 'for all'} {it.unknown}" for it in held.robots if it.unknown)
         where = "" if alike else f" ({shorten(whose, SEVERAL)})"
         verb = "it is" if shown.unknown == 1 else "they are"
-        known = f"{shown.known} known{_partly_known_in_words(shown)}"
+        known = f"{shown.known} known" + f" ({shown.partly} in part)" * bool(shown.partly)
         yield f"{known}, {shown.unknown} started as {verb}{where}"
     if held.compared:
         count = "all" if total.seen == total.nodes else f"{total.seen} of {total.nodes}"
@@ -148,10 +148,6 @@ def _details_in_words(held: Coverage) -> Iterator[str]:
         yield f"{plural(held.processes, 'other process')} started as {verb}"
     if held.unread:
         yield f"{plural(held.unread, 'part')} of launch files not read"
-
-
-def _partly_known_in_words(shown: Covered) -> str:
-    return f" ({shown.partly} in part)" if shown.partly else ""
 
 
 def _row_as_value(held: Coverage, row: Covered) -> Mapping[str, object]:

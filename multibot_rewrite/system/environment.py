@@ -74,7 +74,7 @@ def settings(environ: Mapping[str, str]) -> DiscoverySettings:
     range_ = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "") or "SUBNET"
     return DiscoverySettings(
         domain,
-        range_ if range_ in RANGES and not _is_localhost_only(environ) else LOCALHOST,
+        range_ if range_ in RANGES and environ.get("ROS_LOCALHOST_ONLY") != "1" else LOCALHOST,
         peers,
         environ.get("RMW_IMPLEMENTATION", ""),
         environ.get("ROS_DISCOVERY_SERVER", ""),
@@ -100,15 +100,11 @@ def _parse_domain_id(text: str) -> int:
     return domain
 
 
-def _is_localhost_only(environ: Mapping[str, str]) -> bool:
-    return environ.get("ROS_LOCALHOST_ONLY", "") == "1"
-
-
 def setting_caveats(environ: Mapping[str, str]) -> Iterator[Caveat]:
     """Yield problems in the variables that rcl accepts, each with what to do."""
     asked = settings(environ)
     word = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
-    if _is_localhost_only(environ):
+    if environ.get("ROS_LOCALHOST_ONLY") == "1":
         text = "ROS_LOCALHOST_ONLY=1 overrides discovery range and static peers; unset it and set"
         yield Caveat("localhost-only", False, f"{text} ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST")
     elif word and word not in RANGES:
@@ -190,7 +186,7 @@ def _nothing_seen_message(asked: DiscoverySettings) -> str:
 
 def _cut_off(endpoints: Iterable[End], asked: DiscoverySettings) -> Iterator[Caveat]:
     """Report that Fast DDS may have found too few participants, without multicast or a server."""
-    machines = Counter(map(machine, _process_ids(endpoints)))
+    machines = Counter(map(machine, {it.process for it in endpoints} - {""}))
     if asked.discovery_server or not machines:
         return
     most = max(machines.values())
@@ -249,11 +245,7 @@ def _without_readers(endpoints: Collection[End]) -> list[str]:
 
 def participants(endpoints: Iterable[End]) -> int:
     """Return how many DDS participants the endpoints belong to."""
-    return len(_process_ids(endpoints))
-
-
-def _process_ids(endpoints: Iterable[End]) -> set[str]:
-    return {endpoint.process for endpoint in endpoints} - {""}
+    return len({it.process for it in endpoints} - {""})
 
 
 # The nodes of each machine.

@@ -151,11 +151,13 @@ def _merged_environment(
     around = [look.snapshot.environment for look in looks]
     asked = around[0]
     peers = dict.fromkeys(peer for one in around for peer in one.static_peers)
+    every = zip(*((it.range, it.rmw, it.discovery_server) for it in around), strict=True)
+    range_, rmw, server = (", ".join(dict.fromkeys(filter(None, it))) for it in every)
     return asked._replace(
-        range=_joined_once(one.range for one in around),
+        range=range_,
         static_peers=tuple(peers),
-        rmw=_joined_once(one.rmw for one in around),
-        discovery_server=_joined_once(one.discovery_server for one in around),
+        rmw=rmw,
+        discovery_server=server,
         super_client=all(one.super_client for one in around),
         participants=participants(endpoints),
         settled=max((one.settled for one in around), key=WORST_LAST.index),
@@ -164,15 +166,11 @@ def _merged_environment(
     )
 
 
-def _joined_once(words: Iterable[str]) -> str:
-    return ", ".join(dict.fromkeys(filter(None, words)))
-
-
 def _merged_caveats(looks: Sequence[Look]) -> Iterator[Caveat]:
     """Yield the limitations of each snapshot, without those that are checked again for all of them."""
     files = [look.file for look in looks]
     more = f" and {len(files) - _MANY} more" if len(files) > _MANY else ""
-    text = f"made of {len(files)} looks: {', '.join(files[:_MANY])}{more}"
+    text = f"made of {len(files)} snapshots: {', '.join(files[:_MANY])}{more}"
     yield Caveat("looks-merged", False, text)
     for look in looks:
         for caveat in look.snapshot.environment.caveats:

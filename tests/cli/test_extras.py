@@ -78,7 +78,7 @@ def test_every_extra_that_is_asked_for_is_there() -> None:
     asked = {
         it for path in files for it in re.findall(r"multibot_rewrite\[(\w+)\]", path.read_text())
     }
-    assert asked == {"ros", "zenoh", "bags", "view", "sources"}
+    assert asked == {"ros", "zenoh", "bags", "view", "sources", "lsp"}
     assert asked <= PROJECT["optional-dependencies"].keys()
 
 

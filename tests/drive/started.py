@@ -68,11 +68,15 @@ SUBSTITUTIONS: dict[str, Any] = {
     "TextSubstitution": lambda it, context: it.words["text"],
 }
 ACTIONS = ("Node", "LifecycleNode", "ComposableNodeContainer", "ExecuteProcess")
+# They start nothing; a namespace is pushed for launch files alone that are not here.
+ENVIRONMENT = ("AppendEnvironmentVariable", "SetEnvironmentVariable")
+STARTS_NOTHING = (*ENVIRONMENT, "PushRosNamespace")
 MODULES = {
     "launch": ("LaunchDescription",),
     "launch.actions": (
         *("DeclareLaunchArgument", "EmitEvent", "ExecuteProcess", "GroupAction", "TimerAction"),
         *("IncludeLaunchDescription", "OpaqueFunction", "RegisterEventHandler"),
+        *ENVIRONMENT,
     ),
     "launch.conditions": ("IfCondition", "UnlessCondition"),
     "launch.event_handlers": ("OnProcessExit", "OnProcessStart"),
@@ -116,7 +120,7 @@ def holds(action: Kept, context: Context) -> bool:
 def visit(action: Any, context: Context) -> Iterator[Words]:
     """Yield what an action starts."""
     kind = type(action).__name__
-    if not isinstance(action, Kept) or not holds(action, context):
+    if not isinstance(action, Kept) or kind in STARTS_NOTHING or not holds(action, context):
         return
     if kind == "DeclareLaunchArgument":
         default = text_of(action.words.get("default_value", ""), context)

@@ -40,7 +40,8 @@ def source_of(package: str, program: str, roots: Sequence[Path]) -> Path | None:
             continue
         setup, inner = xml.with_name("setup.py"), rf"{re.escape(program)}\s*=\s*([\w.]+):"
         found = re.search(inner, setup.read_text()) if setup.is_file() else None
-        names = [f"{found[1].replace('.', '/')}.py"] if found else [program, f"**/{program}"]
+        file = f"{found[1].replace('.', '/')}.py" if found else program
+        names = [file, f"src/{file}" if found else f"**/{file}"]
         return next((it for name in names for it in xml.parent.glob(name) if it.is_file()), None)
     return None
 

@@ -347,6 +347,7 @@ def test_one_device_for_two_robots_is_told(
         ExecuteProcess(cmd=['MicroXRCEAgent', 'serial', '--dev', '/dev/ttyUSB0']),
         here('lidar', arguments=['/dev/ttyUSB1', '--rate', '5']),
         here('mcu', parameters=[{'port': '/dev/ttyACM0'}]),
+        here('stick', parameters=[{'device_id': 0}]),
         here('web', arguments=['--port=8080', ['--out=/dev/', LaunchConfiguration('who')]]),
     """
     actions(tmp_path, body)
@@ -355,11 +356,12 @@ def test_one_device_for_two_robots_is_told(
         text.replace("up.launch.py", '"up.launch.py who:={robot}"')
     )
     capsys.readouterr()
-    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-v"]) == 0
     said = [it for it in capsys.readouterr().err.splitlines() if "MB412" in it]
-    for device in ("dev /dev/ttyUSB0", "/dev/ttyUSB1", "port /dev/ttyACM0", "port 8080"):
+    devices = ("dev /dev/ttyUSB0", "/dev/ttyUSB1", "port /dev/ttyACM0", "device_id 0", "port 8080")
+    for device in devices:
         assert [device in it for it in said].count(True) == 1, (device, said)
-    assert len(said) == 4
+    assert len(said) == len(devices)
 
 
 def test_a_node_gets_the_parameter_files_of_its_own(tmp_path: Path) -> None:

@@ -16,6 +16,8 @@ from multibot_rewrite.fleet.file.fleet_file import (
     read_fleet,
 )
 from multibot_rewrite.fleet.fleet import expected
+from multibot_rewrite.fleet.launch import launched_robot
+from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.system.records import RUNS
 
 MODEL = """\
@@ -107,6 +109,19 @@ def test_a_launch_file_that_a_fleet_names_is_read_behind_fences(tmp_path: Path) 
     with pytest.raises(InputError, match="generate_launch_description"):
         planned_fleet(file)
     assert not Path("started").exists() and not (tmp_path / "started").exists()
+
+
+def test_a_launch_file_that_cannot_be_read_is_read_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("a.launch.py").write_text("raise RuntimeError\n")
+    read: list[LaunchOrder] = []
+    own = launched_robot.launch_graph
+    monkeypatch.setattr(launched_robot, "launch_graph", lambda it: [read.append(it), own(it)][1])
+    with pytest.raises(InputError, match=r"^a\.launch\.py: "):
+        launched_robot.launch_of([LaunchOrder("a.launch.py")], "robot1")
+    assert len(read) == 1
 
 
 def test_the_command_takes_a_launch_file_beside_robots(

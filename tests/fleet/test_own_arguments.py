@@ -20,8 +20,8 @@ from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources import job
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.description.sources.read import SourceText
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.robots.rewritten_robots import read_jobs
 

@@ -25,7 +25,7 @@ from vendor_arm_pages import text_of
 from vendor_sources import VARIABLE, installed_sources
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.description.sources.whole import read_whole
+from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.launch import missing as without_launch
 
 pytestmark = pytest.mark.slow

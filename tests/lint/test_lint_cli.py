@@ -120,6 +120,8 @@ WRONG: list[tuple[Sequence[str], str]] = [
     (["good.urdf", "--layout", "L9"], "'L9' is not known, use one of tf-per-robot"),
     (["good.urdf", "--target", "usd"], "use one of mjcf"),
     (["good.urdf", "--diff"], "give both"),
+    (["good.urdf", "--lsp"], "leave out PATH"),
+    (["--lsp", "--changed-since", "HEAD"], "leave out PATH, --fix"),
     (["good.urdf", "--fix", "--diff", "--output", "x"], "leave out --output"),
     (["good.urdf", "-"], "standard input is linted alone"),
     (["-", "--fix"], "standard input is linted alone"),

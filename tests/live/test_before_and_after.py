@@ -169,6 +169,8 @@ def test_transforms_that_are_gone_are_one_finding() -> None:
     (it,) = held(*map(sent.format, ("dock", "gate")))
     assert (it.code, it.node, it.robot, it.names) == ("MG130", "", "", ("dock", "gate"))
     assert "world -> dock, world -> gate on /tf_static are gone" in it.message
+    (own,) = held(sent.format("dock").replace("/tf_static", "/robot1/tf_static"))
+    assert (own.code, own.robot) == ("MG130", "robot1")
     # What a node that is gone may have sent is gone with it.
     dead = sent.format("dock").replace("/robot1/rsp", "/robot2/mapper")
     found = held(dead, f"earlier: /robot2/mapper subscribes /tf {TF}")
@@ -222,6 +224,57 @@ def test_other_qos_frames_and_parameters() -> None:
         ): f"messages on {MODEL} are of robot1/lidar, and were of robot1/laser",
         ("MG130", "/robot1/pilot", ()): "max_speed is 2.0, and was 0.5",
     }
+
+
+def own_tf(graph: System) -> System:
+    """Return the system in which robot1's publisher sends on a topic of its own."""
+    own, node = "/robot1/tf_static", "/robot1/rsp"
+    ends = (it._replace(name=own) if (it.node, it.type) == (node, TF) else it for it in graph.ends)
+    edges = (
+        it._replace(topic=own, publishers=(node,))
+        if it.child.startswith("robot1/") and it.static
+        else it._replace(publishers=tuple(one for one in it.publishers if one != node))
+        for it in graph.edges
+    )
+    return graph._replace(ends=tuple(ends), edges=tuple(edges))
+
+
+def base_of_another(graph: System) -> System:
+    edges = (it._replace(child=it.child.replace("robot1/fo", "robot2/fo")) for it in graph.edges)
+    return graph._replace(edges=tuple(edges))
+
+
+ODOMETRY = [
+    line.format(it)
+    for it in ("robot1", "robot2")
+    for line in (
+        "as before: transform {0}/odom -> {0}/foot on /tf by /robot1/driver, /robot2/driver",
+        "as before: transform {0}/foot -> {0}/tip on /tf_static by /robot1/rsp, /robot2/rsp",
+    )
+]
+
+
+@pytest.mark.parametrize(
+    ("lines", "change", "code"), [([], own_tf, "MG405"), (ODOMETRY, base_of_another, "MG414")]
+)
+def test_what_another_finding_explains_is_no_change_of_its_own(
+    lines: list[str], change: Callable[[System], System], code: str
+) -> None:
+    found = {it.code for it in held(*lines, change=change)}
+    assert code in found and "MG130" not in found
+
+
+def test_a_node_that_is_no_longer_on_simulated_time_is_one_finding() -> None:
+    clock = "/clock rosgraph_msgs/msg/Clock"
+    lines = [f"as before: {it} subscribes {clock}" for it in ("/robot1/pilot", "/robot1/amcl")]
+    lines += [f"as before: /sim publishes {clock}", f"earlier: /robot1/ekf_node subscribes {clock}"]
+    lines += [f"as before: /robot1/ekf_node publishes /robot1/odom_filtered {ODOM}"]
+    before, after = (
+        graph._replace(parameters=(Parameter("/robot1/ekf_node", "use_sim_time", value),))
+        for graph, value in zip(read_looks("\n".join(lines)), ("true", "false"), strict=True)
+    )
+    found = check(seen_plan(diagnose(before)), after, before=before)
+    assert [it.code for it in found] == ["MG503"]
 
 
 def test_the_command_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

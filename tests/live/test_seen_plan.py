@@ -123,3 +123,13 @@ def test_a_robot_that_hangs_from_a_frame_of_all_is_planned_so() -> None:
     assert "/left/robot_state_publisher sends world -> left/base, and does not" in found.hint
     # What the plan does not have from the start is not asked for.
     assert check(planned(arms("right")), arms("right")) == []
+
+
+def test_an_error_of_what_is_seen_is_not_its_plan() -> None:
+    graph = small_fleet.healthy("L2")
+    twist = "geometry_msgs/msg/Twist"
+    more = [end(TOPIC, SUBSCRIBES, "/robot2/cmd_vel", "/robot2/driver", twist)]
+    more += [end(TOPIC, PUBLISHES, "/robot2/cmd_vel", "/robot1/driver", twist)]
+    graph = graph._replace(ends=(*graph.ends, *more))
+    (found,) = check(planned(graph), graph)
+    assert (found.code, found.node) == ("MG311", "/robot1/driver")

@@ -47,6 +47,7 @@ YAML_FAULTS = {
     # libyaml 0.2.6 refuses it before we count: "exceeded maximum nesting depth".
     "flow lists": ("[" * 100_000, "nest"),
     "flow mappings": ("{a: " * 100_000, "nested deeper than 100 levels"),
+    "ends in comments": ("[ # ]\n" * 101, "nested deeper than 100 levels"),
     "block lists": ("- " * 3_000 + "a", "nested deeper than 100 levels"),
     "complex keys": ("? " * 3_000 + "a", "nested deeper than 100 levels"),
     "block mappings": (

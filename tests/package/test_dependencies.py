@@ -47,6 +47,7 @@ MODULES = {
 UNASKED = {
     *("tomli", "tomllib", "tree_sitter", "tree_sitter_cpp", "zenoh", "rosbags", "jsonschema_rs"),
     *("yourdfpy", "trimesh", "numpy"),  # the extra view
+    *("lsprotocol", "pygls"),  # the extra lsp
 }
 # What the tests import before anything else.
 OF_TESTS = {"python3-hypothesis", "python3-numpy", "python3-pytest", "python3-setuptools"}

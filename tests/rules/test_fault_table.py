@@ -105,8 +105,13 @@ def test_a_static_transform_that_is_sent_twice_alike_is_a_note() -> None:
 def test_every_finding_says_what_it_is_about() -> None:
     """Of all faults, each with its code: a robot, a node or a name, and a remedy for itself."""
     for fault in FAULTS:
-        found = diagnose(fault.change(fault.system())).findings
+        before = fault.system()
+        after = fault.change(before)
+        found = diagnose(after).findings
         codes = {it.code for it in found}
+        # What a finding explains is no change of its own.
+        changed = check(seen_plan(diagnose(before)), after, before=before)
+        assert changed and "MG130" not in {it.code for it in changed}, fault.name
         assert {fault.code} <= codes <= {fault.code, *fault.also}, fault.name
         for it in found:
             assert it.robot or it.node or it.names, it

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
+from graph_calls import check, diagnose, seen_plan
 from told_faults import by_check, by_doctor, faults, tells
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -27,10 +28,12 @@ def test_the_twin_is_healthy_and_the_fault_is_told(name: str) -> None:
         if tells(fault, found)
     }
     assert told == {"doctor", "check"} - {*fault.unknown}
-    without, planned = grouped(by_doctor(bad)), grouped(by_check(twin, bad))
-    # One cause is one line, also with a plan.
-    assert len(planned) <= max(1, len(without)), [str(it) for it in planned]
-    assert bool(planned) >= bool(without)
+    without = grouped(by_doctor(bad))
+    changed = check(seen_plan(diagnose(twin)), bad, before=twin)
+    # One cause is one line, also with a plan or an earlier snapshot.
+    for found in (grouped(by_check(twin, bad)), grouped(changed)):
+        assert len(found) <= max(1, len(without)), [str(it) for it in found]
+        assert bool(found) >= bool(without)
 
 
 def grouped(found: Iterable[Finding]) -> list[Finding]:

@@ -22,7 +22,6 @@ from multibot_rewrite.description.rewriters.plugin_definitions import (
     TYPES,
     Definitions,
     PluginDefinition,
-    check_definitions,
     library,
     load_definitions,
 )

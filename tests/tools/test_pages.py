@@ -11,10 +11,7 @@ from paths import ROOT
 
 from multibot_rewrite.base.findings.codes import examples
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.description.rewriters.plugin_definitions import (
-    check_definitions,
-    load_definitions,
-)
+from multibot_rewrite.description.rewriters.plugin_definitions import TYPES, load_definitions
 from multibot_rewrite.lint import catalogue
 from tools.pages.__main__ import main
 from tools.pages.every import SECTIONS, STANDS_FOR, every_page, meant
@@ -63,7 +60,7 @@ def test_text_is_no_html() -> None:
 
 
 def test_every_section_of_the_definitions_is_on_its_page() -> None:
-    for it in check_definitions(load_definitions((), "", packages=False)):
+    for it in load_definitions((), "", packages=False).sections(*TYPES):
         page = made()[f"plugins/{it.file.removesuffix('.vocab')}.md"]
         assert f"\n## {it.name}\n" in page
 

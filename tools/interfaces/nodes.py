@@ -8,9 +8,16 @@ from collections import deque
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis
 from multibot_rewrite.producers.sources.expressions import is_node, last, template_arguments
-from multibot_rewrite.producers.sources.records import Call, Class
+from multibot_rewrite.producers.sources.records import (
+    ARGUMENT,
+    HELPER,
+    OWN,
+    Api,
+    Call,
+    Class,
+    apis,
+)
 from tools.interfaces.scope import (
     Index,
     Resolved,

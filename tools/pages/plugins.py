@@ -9,8 +9,8 @@ from itertools import groupby
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.rewriters.lookup import facts
 from multibot_rewrite.description.rewriters.plugin_definitions import (
+    TYPES,
     PluginDefinition,
-    check_definitions,
     load_definitions,
 )
 from tools.pages.markdown import plain
@@ -33,7 +33,7 @@ Topics under *only a remap moves* get a remap rule unless the file has one.
 
 def pages() -> dict[str, str]:
     """Path below docs/ -> Markdown: a page for each file, and the list of them."""
-    sections = check_definitions(load_definitions((), "", packages=False))
+    sections = load_definitions((), "", packages=False).sections(*TYPES)
     by_file = groupby(sorted(sections, key=lambda r: (r.file, r.line)), lambda r: r.file)
     files = {file.removesuffix(".vocab"): list(found) for file, found in by_file}
     rows = (f"| [{name}]({name}.md) | {len(found)} |\n" for name, found in files.items())

@@ -15,8 +15,8 @@ from multibot_rewrite.description.readback.active import (
     PLUGIN,
     ActivePart,
     active_parts,
-    is_loaded,
     plugin_name,
+    why_not_loaded,
 )
 from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, PluginDefinition
 from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
@@ -38,19 +38,16 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     # Once: so are the others.
     known = (it for it in parts if it.kind == PLUGIN and it.is_known)
     old = next((it for it in known if it.name.startswith(CLASSIC)), None)
-    if old and not lacks_classic(release, inventory.document.source):
-        old = None
+    old = old if old and lacks_classic(release, inventory.document.source) else None
     for plugin in root.iter(PLUGIN):
-        if not is_loaded(plugin):
+        if hint := why_not_loaded(plugin, tree.definitions):
             message = f"nothing loads the <plugin> {plugin_name(plugin)!r} here"
-            yield Problem(plugin, message, None, "move it into a <gazebo>", (), NOT_LOADED)
-    by_ros = _by_ros(parts, tree.definitions)
+            yield Problem(plugin, message, None, hint, (), NOT_LOADED)
+    # Plugins that both ROS have, by the one whose definition is used.
+    both = (it for it in parts if len(tree.definitions.find(PLUGIN, library_key(it.name))) > 1)
+    by_ros = lists_by_key((it.section.ros, it) for it in both if it.section)
     for part in parts:
-        if part.kind == PLUGIN and not {"filename", "type"} & {*part.element.attrib}:
-            # sdformat plugin.sdf: a filename is required.
-            message = f"nothing loads the <plugin> {part.name!r}: it has no library"
-            yield Problem(part.element, message, None, "write its filename=", (), NOT_LOADED)
-        elif not part.is_known:
+        if not part.is_known:
             message, hint = _message_and_hint(part, tree.definitions, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
         elif part is old:
@@ -63,15 +60,6 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             )
             hint = "name the ROS 2 release with --distro, or write it for ROS 2, with <ros>"
             yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
-
-
-def _by_ros(parts: Iterable[ActivePart], definitions: Definitions) -> dict[str, list[ActivePart]]:
-    """Return plugins that both ROS 1 and ROS 2 have, by the ROS whose definition is used."""
-    return lists_by_key(
-        (it.section.ros, it)
-        for it in parts
-        if it.section and len(definitions.find(PLUGIN, library_key(it.name))) > 1
-    )
 
 
 def is_unknown(section: PluginDefinition) -> bool:

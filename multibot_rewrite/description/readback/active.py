@@ -13,7 +13,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.releases import ROS_1, ROS_2
+from multibot_rewrite.base.releases import OF_OLD, ROS_1, ROS_2
 from multibot_rewrite.description.readback.parameters import given_at, holds
 from multibot_rewrite.description.readback.xml import child_text, text_of
 from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, PluginDefinition
@@ -23,6 +23,9 @@ from multibot_rewrite.description.rewriters.plugin_definitions.grammar import sp
 # (gazebosim/gz-sim src/SystemLoader.cc).
 _ENDING = lazy_compile(r"\.(?:so|dylib|dll)\Z")
 _SYSTEM = lazy_compile(r"(?:ignition-gazebo|gz-sim)\d*-?(.*)")
+# A plugin of ROS 1 in a file for ROS 2, and who has it: the branch for ROS 2 lacks it.
+_LEFT_OVER = ROS_2, ROS_1, OF_OLD
+_BY_GAZEBO_ROS = "ros-simulation/gazebo_ros_pkgs"
 # Every plugin that is not known and has a <ros> is a node.
 WITH_ROS = "any_with_ros"
 
@@ -151,8 +154,7 @@ def active_parts(root: _Element, definitions: Definitions) -> Iterator[ActivePar
     """Yield all active parts of a description, kind by kind."""
     every = lists_by_key((str(it.tag), it) for it in root.iter("plugin", "sensor", "include"))
     for plugin in every["plugin"]:
-        inside = _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors())
-        if is_loaded(plugin) and not inside:
+        if not _is_of_another(plugin) and not why_not_loaded(plugin, definitions):
             section, known = plugin_section(plugin, definitions)
             yield ActivePart(PLUGIN, plugin, plugin_name(plugin), section if known else None)
     for system in root.iter("ros2_control"):
@@ -173,6 +175,25 @@ def is_loaded(plugin: _Element) -> bool:
     """Return whether a simulator looks for a plugin at this place."""
     # In a URDF: <gazebo> and tags of others (sdformat parser_urdf.cc, WebotsNode.cpp).
     return not _PARTS.issuperset(str(it.tag) for it in plugin.iterancestors())
+
+
+def _is_of_another(plugin: _Element) -> bool:
+    return not _NO_PLUGINS.isdisjoint(str(it.tag) for it in plugin.iterancestors())
+
+
+def why_not_loaded(plugin: _Element, definitions: Definitions) -> str:
+    """Return why nothing is loaded for a plugin, with what to do; empty if it is no such plugin."""
+    if not is_loaded(plugin):
+        return "move it into a <gazebo>"
+    if _is_of_another(plugin):
+        return ""
+    if not {"filename", "type"} & {*plugin.attrib}:  # required (sdformat plugin.sdf)
+        return "it has no library: write its filename="
+    section, _ = plugin_section(plugin, definitions)
+    if not section or (definitions.ros, section.ros, definitions.release) != _LEFT_OVER:
+        return ""
+    hint = "ROS 2 has no such library: write the plugin that it has for this"
+    return hint if section.source.startswith(_BY_GAZEBO_ROS) else ""
 
 
 def plugin_name(plugin: _Element) -> str:
@@ -207,7 +228,9 @@ def opened(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str
         it = split_opens(word)
         if not it.path or (it.when and not holds(host, it.when)):
             continue
-        values = [value for value in given_at(host, it.path) if value]
+        # A camera puts its sensor's name in front of its files (gz-sensors CameraSensor.cc, SaveImage).
+        own = f"/{host.get('name', '')}" if host.tag == "sensor" and it.kind == FILE else ""
+        values = [f"{value}{own}" for value in given_at(host, it.path) if value]
         for value in values or ([it.default] if it.default else []):
             # The first device of its kind has the number 0.
             if value not in NOWHERE or (it.kind == DEVICE and value == "0"):

@@ -44,7 +44,8 @@ def resolved(
     """Yield (kind, name, parameter) of the topics of something that is no ROS 2 node."""
     # Those named after the model are left out: each robot has its own.
     above = _namespace(host, section)
-    if reads_it(section, release) and scoped_namespace(host) != "":
+    releases = section.model_namespace
+    if releases and has_release(releases, release) and scoped_namespace(host) != "":
         above = scoped_namespace(host)
         # Its default topics are below it, too.
         yield from [(BELOW, above, "model@namespace")] if above else []
@@ -122,11 +123,6 @@ def _namespace(host: _Element, section: PluginDefinition) -> str | None:
 def _join(above: str, name: str) -> str:
     """Return an absolute topic below another name."""
     return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")
-
-
-def reads_it(section: PluginDefinition, release: str) -> bool:
-    """Return whether a system puts the namespace of its model in front, in ``release``."""
-    return bool(section.model_namespace) and has_release(section.model_namespace, release)
 
 
 def scoped_namespace(host: _Element) -> str | None:

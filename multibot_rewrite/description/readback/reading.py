@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.releases import ROS_1
 from multibot_rewrite.description.readback import active, parameters
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
@@ -63,7 +64,9 @@ def read_tree(root: _Element, definitions: Definitions) -> Reading:
     hosts, unknown = _hosts(root, definitions)
     nodes = _ros_nodes(hosts, definitions.release)
     with_node = {it.number for it in nodes}
-    names = [*_links(root), *_node_names(nodes), *_without_rules(root, hosts, with_node)]
+    # A plugin of ROS 1 has the one node of its process.
+    without_rules = _without_rules(root, hosts, with_node) if definitions.ros != ROS_1 else ()
+    names = [*_links(root), *_node_names(nodes), *without_rules]
     names += _other_names_of_hosts(root, hosts, "plugin", with_node, definitions)
     systems = enumerate(root.iter("ros2_control"))
     known = ((it, number, active.hardware_section(it, definitions)) for number, it in systems)
@@ -101,7 +104,7 @@ def _hosts(root: _Element, definitions: Definitions) -> tuple[list[_Host], list[
     unknown: list[tuple[int, str]] = []
     for number, plugin in enumerate(root.iter("plugin")):
         # The class of a ros2_control system, or a plugin of Webots: none of Gazebo's.
-        if not active.is_loaded(plugin) or not {"filename", "name"} & {*plugin.attrib}:
+        if active.why_not_loaded(plugin, definitions) or "filename" not in plugin.attrib:
             continue
         section, known = active.plugin_section(plugin, definitions)
         if not known:
@@ -231,10 +234,15 @@ def _topics(host: _Host, tag: str, release: str) -> Iterator[RuntimeName]:
 def _frame_names(host: _Host, tag: str) -> Iterator[RuntimeName]:
     for path, value in frames_of(host.element, host.section):
         yield RuntimeName(FRAME, value, tag, host.number, path)
+    for name in _hardwired(host, FRAME):
+        yield RuntimeName(FRAME, name, tag, host.number, IN_CODE)
+
+
+def _hardwired(host: _Host, kind: str) -> Iterator[str]:
     for entry in host.section.hardwired:
-        kind, _, name = entry.partition(":")
-        for value in parameters.filled(host.element, host.section, name) if kind == FRAME else ():
-            yield RuntimeName(FRAME, value, tag, host.number, IN_CODE)
+        of_kind, _, name = entry.partition(":")
+        if of_kind == kind:
+            yield from parameters.filled(host.element, host.section, name)
 
 
 def _opened_names(host: _Host, tag: str) -> Iterator[RuntimeName]:
@@ -258,8 +266,10 @@ def _world_lookups(root: _Element, host: _Host, definitions: Definitions) -> Ite
     # A URDF is one model, by the name of its root.
     own = root.iter("robot", "model") if kind == "model" else root.iter(kind)
     there = {element.get("name") for element in own}
+    for name in there.intersection(_hardwired(host, kind)):
+        yield RuntimeName(kind, str(name), tag, host.number, IN_CODE)
     for site in sites:
-        if kind in site.kinds:
+        if kind in site.kinds and site.form != "own":
             for value in dict.fromkeys(parameters.values_of(host.element, site)):
                 # What is looked up below a link has its name.
                 if (value.partition("::")[0] if site.form == "suffixed" else value) in there:

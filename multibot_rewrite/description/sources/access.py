@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
-from multibot_rewrite.base.bounded import MAX_BYTES, read_start
+from multibot_rewrite.base.bounded import MAX_BYTES, open_text, read_start
 from multibot_rewrite.base.model import UNREADABLE, InputError, MultibotError
 from multibot_rewrite.base.outside import outside, real_path, variable
 from multibot_rewrite.description.sources.child.frames import FENCES
@@ -154,6 +154,8 @@ def check_file(path: str) -> None:
 @outside
 def _content(path: str, trust: bool) -> bytes | None:
     """Return a file's bytes, one more than allowed if larger; None for a device or pipe."""
+    if (text := open_text(path)) is not None:
+        return text
     flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
     with open(path, "rb", opener=lambda it, _: os.open(it, flags)) as file:
         is_regular = stat.S_ISREG(os.fstat(file.fileno()).st_mode)

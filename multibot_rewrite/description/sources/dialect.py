@@ -32,7 +32,9 @@ def ros_shown(data: bytes, file: str, tree: Tree) -> str:
     names = {it.decode(errors="replace").strip() for it in _LIBRARY.findall(data)}
     keys = {library_key(it.rpartition("/")[2]) for it in names}
     found = [{one.ros for one in tree.definitions.find("plugin", it)} for it in keys]
-    if all(len(it) < 2 for it in found):
+    # Beside a system of the new Gazebo a plugin of ROS 1 is left over.
+    of_gz = any(it.startswith("gz-") for it in keys)
+    if all(len(it) < 2 and (of_gz or ROS_1 not in it) for it in found):
         return ""
     try:
         root = read_xml(data, file)

@@ -2,7 +2,7 @@
 """What one rewrite works on: everything it depends on but the robots, read once."""
 
 import re
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from typing import NamedTuple
@@ -29,9 +29,8 @@ from multibot_rewrite.description.sources.own_names import (
     own_texts,
     templates,
 )
-from multibot_rewrite.description.sources.read import Source, SourceText, args_for
+from multibot_rewrite.description.sources.read import JOIN, Source, SourceText, args_for, read_alone
 from multibot_rewrite.description.sources.release_said import release_said
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.sources.world_systems import set_aside
 from multibot_rewrite.description.steps.apply import cut, fill
 from multibot_rewrite.description.steps.collect import (
@@ -105,6 +104,15 @@ class Job(NamedTuple):
         own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, layout)
         urdf = [collect(read_document(*self.urdf), tree, layout=layout)] if self.urdf else []
         return [own, *urdf]
+
+
+def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
+    """Return a source's bytes and the files that were read; ``trust``: xacro without the sandbox."""
+    if not isinstance(source, bytes) and str(source).endswith(JOIN) and not xacro_args:
+        from multibot_rewrite.description.joining.from_file import read_joined
+
+        return read_joined(str(source), trust)
+    return read_alone(source, xacro_args, trust)
 
 
 def read_job(

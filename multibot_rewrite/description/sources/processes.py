@@ -127,17 +127,18 @@ def child(seconds: float) -> Iterator[XacroChild]:
 
 def _started_child(theirs: socket.socket) -> tuple[Server, int]:
     for _ in range(2):
-        server = _server(os.getpid())
+        one = server(os.getpid())
         try:
-            return server, server.start(theirs)
+            return one, one.start(theirs)
         except ServerGoneError:
-            _server.cache_clear()
-    raise InputError(f"xacro: no process can be started: {sys.executable} does not run {_MODULE}")
+            server.cache_clear()
+    why = f"{sys.executable} does not run {_MODULE}; install multibot_rewrite for it"
+    raise InputError(f"xacro: no process can be started: {why}")
 
 
 @lru_cache(maxsize=1)
-def _server(pid: int) -> Server:
-    """Return the server of this process; a fork of it gets its own."""
+def server(pid: int) -> Server:
+    """Return the server of this process, which is started; a fork of it gets its own."""
     return Server()
 
 

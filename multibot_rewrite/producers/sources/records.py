@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is read from sources: classes, what they call.
+"""What is read from sources: classes, what they call; which calls declare ends, by ``calls.txt``.
 
 A text that is only known at run time has its unknown parts in <>: ``<layer>_raw``. A part that is the
 value of a parameter starts with @: ``<@odom_topic>``, ``<@{plugin}.topic>``; a node that is made has a
@@ -7,10 +7,16 @@ colon: ``<Node:name>``.
 """
 
 from collections.abc import Mapping
+from functools import cache
 from typing import NamedTuple
+
+from multibot_rewrite.base.bounded import own_text
+from multibot_rewrite.base.grouping import lists_by_key
 
 # A text of which nothing is known, and a condition that is not.
 ANY, OTHERWISE = "<?>", "?"
+ARGUMENT = "ARGUMENT"
+HELPER, OWN = "helper", "own"
 
 
 def braced(text: str) -> str:
@@ -125,3 +131,28 @@ def joined(sources: list[Source]) -> Source:
     """Return several sources as one."""
     columns = zip(*sources, strict=True)
     return Source(*(tuple(item for part in column for item in part) for column in columns))
+
+
+class Api(NamedTuple):
+    """A call that declares an endpoint; see the head of ``calls.txt``."""
+
+    function: str
+    role: str
+    name: str
+    type: str
+    node: str = ""
+
+
+@cache
+def apis() -> Mapping[str, tuple[Api, ...]]:
+    """Return the calls that declare endpoints, by function."""
+    lines = own_text(__file__, "calls.txt").splitlines()
+    every = (Api(*line.split()) for line in lines if line and not line.startswith("#"))
+    found = lists_by_key((it.function, it) for it in every)
+    return {name: tuple(rows) for name, rows in found.items()}
+
+
+@cache
+def harmless() -> frozenset[str]:
+    """Return the functions that use nothing of a node that others see."""
+    return frozenset(own_text(__file__, "harmless.txt").partition("\n")[2].split())

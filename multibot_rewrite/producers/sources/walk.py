@@ -7,15 +7,20 @@ What is called is followed as far as its text is here. What nothing calls by nam
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.producers.sources.apis import ARGUMENT, HELPER, OWN, Api, apis, harmless
 from multibot_rewrite.producers.sources.expressions import is_node, last, template_arguments
 from multibot_rewrite.producers.sources.records import (
     ANY,
+    ARGUMENT,
+    HELPER,
     OTHERWISE,
+    OWN,
+    Api,
     Call,
     Class,
     Constructor,
     Place,
+    apis,
+    harmless,
     parameter_in,
 )
 from multibot_rewrite.producers.sources.resolve import (

@@ -94,21 +94,22 @@ class _Seen(NamedTuple):
 def _look_in(session: RouterSession, request: Request, router: Router, started: float) -> System:
     """Return a snapshot by the router's tokens and tf, once all that is expected is there."""
     keys, complete = session.tokens(router.key())
-    while not _has_all(keys, request.expected) and time.monotonic() - started < request.timeout:
+    seen, expected = _read_tokens(keys), {*request.expected}
+    while expected - _names(seen.tokens) and time.monotonic() - started < request.timeout:
         time.sleep(POLL_SECONDS)
         keys, complete = session.tokens(router.key())
-    seen = _read_tokens(keys)
+        seen = _read_tokens(keys)
     tf = ZenohTf(session, router.domain)
     tf.listen(tokens.endpoints(seen.tokens), request.timeout - (time.monotonic() - started))
-    settled = EXPECTED if _has_all(keys, request.expected) else TIMEOUT
     text = f"the router at {router.address} did not answer in full; look again"
     cut = Caveat("not-settled", True, text)
     caveats = [*(_strays(session, seen.tokens, router) if complete else [cut]), *tf.caveats()]
-    absent = sorted({*request.expected} - _names(seen.tokens))
+    absent = sorted(expected - _names(seen.tokens))
     if absent and seen.tokens:
         text = f"expected names not in the graph: {shorten(absent, SEVERAL)}"
         caveats.append(Caveat(WAITED_FOR, True, f"{text}; is all started, are the names right?"))
-    seen = seen._replace(tf=tf.subscriptions, settled=settled if request.expected else QUIET)
+    settled = TIMEOUT if absent else EXPECTED if expected else QUIET
+    seen = seen._replace(tf=tf.subscriptions, settled=settled)
     return _snapshot(router, seen, time.monotonic() - started, caveats)
 
 
@@ -122,10 +123,6 @@ def _read_tokens(keys: Iterable[str]) -> _Seen:
 def _names(found: Iterable[Token]) -> set[str]:
     """Return the nodes, and the names of their ends."""
     return {name for it in found for name in (it.node, it.end.name if it.end else it.node)}
-
-
-def _has_all(keys: Iterable[str], expected: Iterable[str]) -> bool:
-    return _names(_read_tokens(keys).tokens).issuperset(expected)
 
 
 def _strays(session: RouterSession, found: Iterable[Token], router: Router) -> Iterator[Caveat]:

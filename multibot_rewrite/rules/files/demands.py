@@ -40,15 +40,20 @@ class Demand(NamedTuple):
 
 def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
     """Yield the demands of these kinds on the parameters of a file."""
+    if Demand not in file.memo:
+        file.memo[Demand] = tuple(_demands(file))
+    return (it for it in file.memo[Demand] if it.check in checks)
+
+
+def _demands(file: NamedFile) -> Iterator[Demand]:
     for section in sections(file):
         for it, known in section.known:
-            here = of_release(known, file.context.distro) if it.value is not None else []
-            facts = [fact for fact in here if fact.how == DEMANDED]
+            every = [fact for fact in known if fact.how == DEMANDED]
+            facts = of_release(every, file.context.distro) if it.value is not None else []
             for fact in [one for one in facts if one.path == it.name] or facts:
                 for check, text in fact.checks:
-                    if check in checks:
-                        words = filled(text, fact.path, it.name)
-                        yield Demand(section, it, check, words, fact.source, fact.releases)
+                    words = filled(text, fact.path, it.name)
+                    yield Demand(section, it, check, words, fact.source, fact.releases)
 
 
 def above_others(file: NamedFile) -> Iterator[Finding]:
@@ -91,10 +96,9 @@ def contradictions(file: NamedFile) -> Iterator[Finding]:
         # Names in a list that are no node of the file, but nearly one that the list lacks.
         nodes = {section.title for section in sections(file)}
         listed = _items(it)
-        for word in map(str, listed):
+        for word in (it for it in map(str, listed) if it not in nodes):
             left = [name for name in nodes - {*listed} if not differ_in_numbers(word, name)]
-            meant = "" if word in nodes else slip_of(word, sorted(left))
-            if meant:
+            if meant := slip_of(word, sorted(left)):
                 message = f"{it.section.title}: {it.given.name} has {word!r}, and lacks {meant!r}"
                 yield remark_at(
                     it.given.node, message, f"list such a node: it waits; see {it.source}"

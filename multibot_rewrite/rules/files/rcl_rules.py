@@ -21,7 +21,7 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.nearest import nearest, slip_of
+from multibot_rewrite.base.nearest import differ_in_numbers, nearest, slip_of
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.conditions import word_of
 from multibot_rewrite.planning.records import Given
@@ -196,9 +196,6 @@ def no_value(file: NamedFile) -> Iterator[Finding]:
             yield remark_at(key, message, 'rcl rejects the whole file; write a value, or ""')
 
 
-_DIGITS = str.maketrans("", "", "0123456789")
-
-
 @rule("MB877", "listed-name-without-parameters", WARNING, formats=(PARAMS,))
 def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
     """Report each list of a node with names that have no parameters."""
@@ -219,7 +216,7 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
             for word in _names_of_list(value) if left and is_in(file, value.place) else ():
                 # A word with a dot has its parameters below several names.
                 near = nearest(word, left) if word.partition(".")[0] not in own else ""
-                if near and near.translate(_DIGITS) != word.translate(_DIGITS):
+                if near and not differ_in_numbers(near, word):
                     message = f"{node.node} has {word} in {parameter}, without parameters"
                     hint = did_you_mean_at(near, own[near])
                     yield remark(value.place._replace(column=1), message, hint)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import (
+    CLOCK,
     EVERYBODYS,
     OF_EVERY_NODE,
     chooses,
@@ -20,7 +21,16 @@ from multibot_rewrite.rules.system.matching import qos_words
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, at_work
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, Edge, End, System
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SIM_TIME,
+    Edge,
+    End,
+    System,
+)
 
 # In metres and parts of a quaternion.
 _SAME = 1e-3
@@ -38,6 +48,7 @@ class _Change(NamedTuple):
     what: str
     names: tuple[str, ...]
     level: str = WARNING
+    topic: str = ""
 
 
 @planned_rule("MG130", "changed-since", WARNING, absence=True)
@@ -45,7 +56,8 @@ def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
     """Report each change; what another finding is about is left to that one (``untold``)."""
     before = seen.known.before
     for it in _changes(before, seen) if before else ():
-        robot = seen.robot(it.node) or next(filter(None, map(seen.robot, it.names)), "")
+        names = it.node, *it.names, it.topic
+        robot = next(filter(None, map(seen.robot, names)), "")
         yield changed_since.finding(
             it.what, _MEANT, level=it.level, robot=robot, node=it.node, names=it.names
         )
@@ -86,7 +98,8 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
     for key, end in new.items():
         tool, did_not = seen.is_tool(end.node), f"{DOES[end.role]} {end.name}, and did not"
         if key in old:
-            if (was := _type_and_qos(old[key])) != (now := _type_and_qos(end)) and not tool:
+            was, now = (" ".join((it.type, *qos_words(it))) for it in (old[key], end))
+            if was != now and not tool:
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
         elif heeded := _obeyed_by(seen, end):
@@ -117,11 +130,6 @@ def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
         and it.type != TF
         and not it.type.startswith(words.OF_EVERY_NODE)
     }
-
-
-def _type_and_qos(end: End) -> str:
-    """Return type and unusual QoS of an end as a text."""
-    return " ".join((end.type, *qos_words(end)))
 
 
 def _obeyed_by(seen: Index, end: End) -> str:
@@ -175,7 +183,7 @@ def _changed_transforms(before: System, seen: Index) -> Iterator[_Change]:
             gone[_sender(seen, edge), topic, level].append(place)
         elif place in new and _is_moved(edge, new[place]):
             sent = f"the transform {parent} -> {child} on {topic}"
-            yield _Change("", f"{sent} is elsewhere than it was", (child,))
+            yield _Change("", f"{sent} is elsewhere than it was", (child,), topic=topic)
     for (node, topic, level), places in gone.items():
         pairs = shorten([f"{parent} -> {child}" for parent, child, _ in places])
         moved = [f"{it[1]} is below {above[it[1:]]}" for it in places if it[1:] in above]
@@ -183,7 +191,7 @@ def _changed_transforms(before: System, seen: Index) -> Iterator[_Change]:
         if len(places) > 1:
             what = f"the transforms {pairs} on {topic} are gone"
         what += f": {shorten(moved)}" if moved else ""
-        yield _Change(node, what, tuple(child for _, child, _ in places), level)
+        yield _Change(node, what, tuple(child for _, child, _ in places), level, topic)
     known = {(child, topic) for _, child, topic in old}
     fresh = (it for it in new if it not in old and it[1:] not in known)
     for topic, places in lists_by_key((it[2], it) for it in fresh).items():
@@ -193,6 +201,7 @@ def _changed_transforms(before: System, seen: Index) -> Iterator[_Change]:
             senders[0] if len({*senders}) == 1 else "",
             f"{listed} on {topic} was not there",
             tuple(child for _, child, _ in places),
+            topic=topic,
         )
 
 
@@ -235,4 +244,5 @@ def _changed_parameters(before: System, seen: Index) -> Iterator[_Change]:
         if old != it.value and not seen.is_tool(it.node):
             changed[it.node].append(f"{it.name} is {it.value}, and was {old}")
     for node, own in changed.items():
-        yield _Change(node, shorten(own), ())
+        timed = any(it.startswith(f"{SIM_TIME} ") for it in own)
+        yield _Change(node, shorten(own), (CLOCK,) * timed)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import (
     EVERYBODYS,
@@ -25,7 +25,7 @@ from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC, End
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.words import is_hidden, is_tool, is_viewer, last_word
 
 # A person drives with these.
@@ -73,23 +73,24 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
     """Report commands without a reader, unless the reader of a like name is reported."""
     obeyed: dict[str, list[str]] = defaultdict(list)
-    waiting: dict[str, list[str]] = defaultdict(list)
+    waiting: dict[str, list[Ends]] = defaultdict(list)
     plainly: dict[tuple[str, str], list[str]] = defaultdict(list)
     unread: dict[str, Ends] = {}
     for name, it in seen.orders.items():
         # What only may be sent is not missed.
         sent = tuple(one for one in it.publishers if one.sure == RUNS)
-        if sent and not _is_obeyed(it):
+        if sent and not at_work(it.subscribers):
             unread[name] = it._replace(publishers=sent)
     for (kind, name), ends in seen.by_name.items() if unread else ():
-        if kind == TOPIC and _is_obeyed(ends):
-            (obeyed if ends.publishers else waiting)[ends.type].append(name)
+        if kind == TOPIC and at_work(ends.subscribers):
+            waiting[ends.type.removesuffix(STAMPED)].append(ends)
+            obeyed[ends.type] += [name] * bool(ends.publishers)
             plainly[ends.type, seen.plain(name)] += [name] * bool(ends.publishers)
     spelled: dict[str, Spelled] = {}
     for name, ends in unread.items():
         # What waits for such a command is a finding of its own, unless it takes another type.
-        other = _with_other_stamp(ends.type)
-        same = obeyed[ends.type] or obeyed[other] + waiting[other]
+        others = (it for it in waiting[ends.type.removesuffix(STAMPED)] if it.type != ends.type)
+        same = obeyed[ends.type] or [it.name for it in others]
         spelled[ends.type] = spelled.get(ends.type) or Spelled(same)
         robots = _meant_commands(seen, ends, plainly[ends.type, name])
         near = next(iter(robots), "") or _like_command(seen, ends, spelled[ends.type])
@@ -110,7 +111,7 @@ def _meant_commands(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[s
     if not mine:
         return names
     own = seen.of_robot(mine, TOPIC, seen.plain(ends.name))
-    return [own.name] if own and own.name != ends.name and _is_obeyed(own) else []
+    return [own.name] if own and own.name != ends.name and at_work(own.subscribers) else []
 
 
 def _like_command(seen: Index, ends: Ends, known: Spelled) -> str:
@@ -164,19 +165,15 @@ def _velocity_ends(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequen
 def _obeyed_commands(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     """Return the obeyed commands by type and robot."""
     return lists_by_key(
-        ((it.type, seen.robot(it.name)), it.name) for it in seen.orders.values() if _is_obeyed(it)
+        ((it.type, seen.robot(it.name)), it.name)
+        for it in seen.orders.values()
+        if at_work(it.subscribers)
     )
 
 
 def _plain_types(ends: Ends) -> set[str]:
     """Return the types of a topic, as if none were stamped: that is a switch of the sender."""
     return {it.removesuffix(STAMPED) for it in ends.type.split(" | ")}
-
-
-def _with_other_stamp(type_: str) -> str:
-    """Return the type with a stamp of one without, and the other way round."""
-    plain = type_.removesuffix(STAMPED)
-    return plain if plain != type_ else f"{type_}{STAMPED}"
 
 
 def _command_by_hand(seen: Index, ends: Ends, same: Sequence[str]) -> str:
@@ -192,10 +189,6 @@ def _command_by_hand(seen: Index, ends: Ends, same: Sequence[str]) -> str:
     else:
         own = [*_obeyed_commands(seen).get((ends.type, robot), ())]
     return own[0] if len(own) == 1 else ""
-
-
-def _is_obeyed(ends: Ends) -> bool:
-    return bool(at_work(ends.subscribers))
 
 
 def _unread_command(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
@@ -234,13 +227,17 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
     """Report also tools: a joystick of one robot is not for another."""
     for (kind, name), ends in seen.by_name.items():
         owner = seen.robot(name)
-        crossing = _ends_of_others(seen, owner, (*ends.publishers, *ends.clients)) if owner else ()
+        crossing = [
+            it
+            for it in ((*ends.publishers, *ends.clients) if owner else ())
+            if seen.robot(it.node) not in ("", owner)
+        ]
         if not crossing:
             continue
         order = kind == TOPIC and (name in seen.orders or _is_waited_for(seen, ends))
-        senders = ends.publishers if order else ends.clients
+        role = PUBLISHES if order else CALLS
         served = kind == TOPIC or ends.servers
-        for node in nodes_of(_ends_of_others(seen, owner, senders)) if served else ():
+        for node in nodes_of(it for it in crossing if it.role == role) if served else ():
             robot = seen.robot(node)
             # Who has both coordinates the two; a service that its own robot has not is for others.
             own = seen.of_robot(robot, kind, seen.plain(name))
@@ -249,18 +246,13 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
             message = f"{does} {name}, a name of {owner}"
             # Where somebody sends to its own robot already, a rule would make two senders.
-            free = own and (own.servers or (_is_obeyed(own) and not _sends_already(seen, own.name)))
-            free = free and kind != ACTION
+            obeyed = own and at_work(own.subscribers) and not _sends_already(seen, own.name)
+            free = own and (own.servers or obeyed) and kind != ACTION
             rules = [Remap(node, name, own.name)] if own and free and own.type == ends.type else []
             yield command_from_another_robot.finding(
                 message, **names_another(robot, owner, rules)._asdict(),
                 robot=robot, node=node, names=(name,),
             )  # fmt: skip
-
-
-def _ends_of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
-    """Return the ends of nodes of other robots."""
-    return [it for it in ends if seen.robot(it.node) not in ("", owner)]
 
 
 def _is_waited_for(seen: Index, ends: Ends) -> bool:
@@ -318,7 +310,7 @@ def bag_played_to_robot(seen: Index) -> Iterator[Finding]:
             continue
         players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(words.PLAYER)]
         others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
-        obeyed = words.moves(seen.plain(ends.name), ends.type) and _is_obeyed(ends)
+        obeyed = words.moves(seen.plain(ends.name), ends.type) and at_work(ends.subscribers)
         if players and ends.name not in OF_EVERY_NODE and (others or obeyed):
             mixed[players[0]].append(ends.name)
     for player, names in mixed.items():

@@ -61,7 +61,7 @@ def _maps_below_the_map(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
         edges = (one for tree in trees_of(seen, robot) for one in tree.edges)
         root = root_of(it.frame, {one.child: one.parent for one in edges})
-        if seen.plain_frame(root) in WORLD_FRAMES and _may_be_frame_of(seen, it.frame, robot):
+        if seen.plain_frame(root) in WORLD_FRAMES and seen.frame_robot(it.frame) in ("", robot):
             yield map_not_joined.finding(
                 f"frame_id of {it.topic} is {it.frame}, which moves in {root}; sent by {senders[0]}",
                 f"set the frame of {senders[0]} to that of the map",
@@ -80,9 +80,8 @@ def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     above: dict[str, str] = {it.child: it.parent for it in tree.edges}
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
-    frames = [
-        it for it in {**above, **dict.fromkeys(above.values())} if _may_be_frame_of(seen, it, robot)
-    ]
+    every = {**above, **dict.fromkeys(above.values())}
+    frames = [it for it in every if seen.frame_robot(it) in ("", robot)]
     # What hangs on the map and has nothing below it.
     ends = above.keys() - {*above.values()}
     loose = [it for it in frames if it in ends and above[it] in WORLD_FRAMES]
@@ -91,10 +90,6 @@ def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     bodies = BODY_FRAMES if _ODOM in map(seen.plain_frame, loose) else ()
     is_one = len(roots) == 1 and {*WORLD_FRAMES, *bodies}.isdisjoint(map(seen.plain_frame, roots))
     return _Body(next(iter(roots)), tuple(loose)) if is_one else None
-
-
-def _may_be_frame_of(seen: Index, frame: str, robot: str) -> bool:
-    return seen.frame_robot(frame) in ("", robot)
 
 
 @once
@@ -206,7 +201,7 @@ def part_far_away(seen: Index) -> Iterator[Finding]:
             if it.static and _FAR < away < inf and _is_of_a_body(seen, it.parent, above):
                 yield part_far_away.finding(
                     f"{it.parent} -> {it.child} on {it.topic} is {away:g} m long",
-                    f"write metres where {shorten(it.publishers) or 'its node'} gets it",
+                    f"write metres in the files that {shorten(it.publishers) or 'its node'} reads",
                     robot=seen.frame_robot(it.child) or only(robots_of(seen, it.publishers)),
                     names=(it.child, it.topic),
                 )

@@ -2,7 +2,7 @@
 """Dangers of names: a subscriber or client whose other side has nearly the same name, two servers."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Collection, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
@@ -22,7 +22,6 @@ from multibot_rewrite.rules.system.instead import (
 from multibot_rewrite.rules.system.likes import done_elsewhere, has_likes_of
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import (
-    TF,
     Ends,
     Index,
     at_work,
@@ -41,26 +40,25 @@ ABSENT = "is that robot started, and is its name right?"
 @system_rule("MG303", "topic-names-miss", ERROR, absence=True, drawn="leak")
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
     """Yield subscribers whose topic nobody sends, with the name it is sent under if one is alike."""
-    topics = {name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC}
-    unsent = [it for it in topics.values() if not it.publishers and it.type != TF]
-    unsent = [it for it in unsent if it.name not in EVERYBODYS]
+    unsent = [it for it in seen.topics if not it.publishers]
     if not unsent:
         return
     # What only may be sent is not what was meant.
-    published = {name: it for name, it in topics.items() if any(map(_surely_runs, it.publishers))}
+    sent = (it for own in _published(seen).values() for it in own)
+    published = {it.name: it for it in sent if any(one.sure == RUNS for one in it.publishers)}
     unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
     for ends in unsent:
         by_kind: dict[str, list[End]] = {}
         there = done_elsewhere(seen, ends)
         lost = there and not has_likes_of(seen, seen.robot(ends.name), there)
-        for end in _each_node(ends.subscribers):
-            if is_viewer(end.node) or not _surely_runs(end):
+        for end in {it.node: it for it in ends.subscribers}.values():
+            if is_viewer(end.node) or end.sure != RUNS:
                 continue
             # What chooses between several inputs seldom has all of them.
             offered = unheard if chooses(end.node) else published
             if near := published.get(_published_instead(seen, end, offered, unheard)):
                 yield _missed_topic(seen, end, near, ERROR)
-            elif other := None if lost else sent_instead(seen, end):
+            elif not lost and (other := sent_instead(seen, end)) and other.name in published:
                 by_kind.setdefault(other.name, []).append(end)
             elif mine := _robots_topics(seen, end):
                 yield _outside_reader(seen, end, mine)
@@ -103,15 +101,6 @@ def _outside_reader(seen: Index, end: End, names: Sequence[str]) -> Finding:
     )  # fmt: skip
 
 
-def _surely_runs(end: End) -> bool:
-    """Return whether the end is certain, because its node certainly runs."""
-    return end.sure == RUNS
-
-
-def _each_node(ends: Iterable[End]) -> Iterator[End]:
-    return iter({end.node: end for end in ends}.values())
-
-
 def _published_instead(
     seen: Index, end: End, published: dict[str, Ends], unheard: dict[str, Ends]
 ) -> str:
@@ -121,10 +110,10 @@ def _published_instead(
     above = (it for it in _possible_names(end.node, end.name) if it in published)
     fitting = (it for it in above if published[it].type == end.type)
 
-    def mine(it: str) -> bool:
+    def has_own_sender(it: str) -> bool:
         return not own.isdisjoint(map(seen.robot, nodes_of(published[it].publishers)))
 
-    if captured := next(filter(mine, fitting), ""):
+    if captured := next(filter(has_own_sender, fitting), ""):
         return captured
     if not owner and robot:
         # Its own robot has it: whether or not others read it as well.
@@ -136,7 +125,7 @@ def _published_instead(
     def is_of_another(it: str) -> bool:
         if it not in published or nodes_of(published[it].publishers) == (end.node,):
             return False
-        return not _is_of_other_robot(seen, end.name, it) and (not owner or mine(it))
+        return not _is_of_other_robot(seen, end.name, it) and (not owner or has_own_sender(it))
 
     bare = seen.plain(end.name)
     hidden = [_without_own_name(end), *_hidden_names(seen, end.name)]
@@ -177,17 +166,15 @@ def _robots_with_node(seen: Index) -> Mapping[str, Set[str]]:
 def _by_plain(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     """Return the published topics of each robot, by robot and name without it."""
     return lists_by_key(
-        ((seen.robot(it.name), seen.plain(it.name)), it.name)
-        for it in (one for own in _published(seen).values() for one in own)
+        ((seen.robot(it.name), seen.plain(it.name)), it.name) for it in seen.topics if it.publishers
     )
 
 
 @once
 def _published(seen: Index) -> Mapping[str, Sequence[Ends]]:
     """Return the topics with a publisher, by type."""
-    return lists_by_key(
-        (it.type, it) for (kind, _), it in seen.by_name.items() if kind == TOPIC and it.publishers
-    )
+    topics = (it for it in seen.by_name.values() if it.kind == TOPIC and it.publishers)
+    return lists_by_key((it.type, it) for it in topics)
 
 
 def _possible_names(node: str, name: str) -> Iterator[str]:
@@ -274,10 +261,9 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     """Yield clients whose server has another name. A service that nobody serves may be optional."""
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
-            for end in filter(_surely_runs, _each_node(ends.clients)):
-                yield from _unserved_findings(
-                    seen, end, _served_names(seen).get((end.kind, end.type), _NOBODY)
-                )
+            for end in {it.node: it for it in ends.clients if it.sure == RUNS}.values():
+                served = _served_names(seen).get((end.kind, end.type), _NOBODY)
+                yield from _unserved_findings(seen, end, served)
 
 
 def not_managed(seen: Index, manager: str, nodes: Sequence[str], else_: str = "") -> Cause:
@@ -388,8 +374,9 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
     parts = f"{ACTION_PARTS}," if end.kind == ACTION else ""
     cause = f"pass the rule {end.name}:={other},{parts} or start it in the namespace of the robot"
     remaps: tuple[Remap, ...] = (Remap(end.node, end.name, other),)
-    managed = [it.node for it in seen.by_name[end.kind, other].clients if _is_manager(it.node)]
-    if _is_manager(end.node) and managed:
+    callers = (it.node for it in seen.by_name[end.kind, other].clients)
+    managed = [it for it in callers if last_word(it).startswith(MANAGER)]
+    if last_word(end.node).startswith(MANAGER) and managed:
         cause, remaps = f"{managed[0]} manages that node already: do not start {end.node}", ()
     clicked = is_viewer(end.node) and not is_spawner(end.node)
     return server_names_miss.finding(
@@ -397,10 +384,6 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
         level=NOTE if clicked else level, robot=seen.robot(end.node) or seen.robot(other),
         node=end.node, names=(end.name, other), remaps=remaps, **last_place([end]),
     )  # fmt: skip
-
-
-def _is_manager(node: str) -> bool:
-    return last_word(node).startswith(MANAGER)
 
 
 def _served_instead(seen: Index, end: End, served: _Served) -> str:

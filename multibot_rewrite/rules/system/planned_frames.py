@@ -93,15 +93,12 @@ def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
             cause = f"did you mean {meant}? Otherwise" if meant else "a sensor's own frame? Then"
             there = frames_by_topic(seen)[tree.topic]
             instead = any(it.meant and it.meant not in there for it in others)
+            listed = f"frame{'s' * (len(names) > 1)} {shorten(names)}"
             yield undeclared_frame.finding(
-                f"{_frames_text(names)} {verb} not in the description of {robot.name}",
+                f"{listed} {verb} not in the description of {robot.name}",
                 f"{cause} add {them} to other_frames of the plan",
                 level=ERROR if instead else WARNING, robot=robot.name, names=tuple(names),
             )  # fmt: skip
-
-
-def _frames_text(names: Sequence[str]) -> str:
-    return f"frame {names[0]}" if len(names) == 1 else f"frames {shorten(names)}"
 
 
 def _is_added_by_driver(plan: Index, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
@@ -139,7 +136,8 @@ def with_more_names(
                 " by default), on top of a rewritten description: set them to '' and false",
                 settings=(Setting(node, "frame_prefix", ""),) if node else (),
             )
-            yield f"{_frames_text(names)} {verb} planned without {added!r}", cause, robot, names
+            frames = f"frame{'s' * (len(names) > 1)} {shorten(names)}"
+            yield f"{frames} {verb} planned without {added!r}", cause, robot, names
 
 
 def misnamed(plan: Index, seen: Index) -> Set[str]:

@@ -33,7 +33,8 @@ from multibot_rewrite.system.words import is_viewer
 def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
     """Report nodes of the plan; a robot without any of its nodes is one ``missing_robot``."""
     for robot in plan.system.robots:
-        for node in () if _is_missing(plan, seen, robot) else _missing_nodes(plan, seen, robot):
+        gone = is_absent(plan, seen, robot.name)
+        for node in () if gone else _missing_nodes(plan, seen, robot):
             match = matches(plan, seen).get(node, "")
             cause = why_other_name(plan, node, match) if match else _not_started(plan, node)
             message = (
@@ -81,10 +82,6 @@ def is_absent(plan: Index, seen: Index, robot: str) -> bool:
     return seen.nodes.keys().isdisjoint(plan.own[robot])
 
 
-def _is_missing(plan: Index, seen: Index, robot: Robot) -> bool:
-    return is_absent(plan, seen, robot.name) and bool(_missing_nodes(plan, seen, robot))
-
-
 def _not_started(plan: Index, node: str) -> Cause:
     """Return the likely cause why a planned node does not run."""
     plugin, place = plugin_of(plan, node)
@@ -127,7 +124,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
 def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
     """Report a robot none of whose planned nodes runs, in one finding."""
     for robot in plan.system.robots:
-        if _is_missing(plan, seen, robot):
+        if is_absent(plan, seen, robot.name) and _missing_nodes(plan, seen, robot):
             count = len(plan.own[robot.name])
             message = f"none of the {count} nodes of {robot.name} is in the graph"
             # Its nodes that probably run under other names.

@@ -13,7 +13,7 @@ from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.commands import LIMITS
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, once
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import last_word
 
 # What holds several networks, or a simulator, together.
@@ -47,9 +47,8 @@ def _body_topics(seen: Index) -> Sequence[Ends]:
     """Return the robots' topics for commands and for sensor data."""
     return [
         it
-        for it in seen.by_name.values()
-        if it.kind == TOPIC
-        and (words.is_of_a_body(it.type) or words.moves(seen.plain(it.name), it.type))
+        for it in seen.topics
+        if (words.is_of_a_body(it.type) or words.moves(seen.plain(it.name), it.type))
         and seen.robot(it.name)
     ]
 
@@ -117,8 +116,8 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
         # Of the two it is the one that sends where others send as well.
         if other and (len(sent_.publishers), given) > (len(back.publishers), source):
             yield data_in_a_circle.finding(
-                f"sends {given} of what {other} makes of {given}",
-                "one of the two has to send on another topic",
+                f"makes {given} from {source}, and {other} makes {source} from {given}",
+                "let one of the two publish on another topic",
                 robot=seen.robot(node), node=node, names=(given,),
             )  # fmt: skip
 

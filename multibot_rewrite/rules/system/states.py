@@ -76,7 +76,8 @@ def _active_at_another(seen: Index, node: str) -> str:
 def _manager(seen: Index, node: str) -> str:
     """Return the node that changes the state of another one; empty for none."""
     clients = (end.node for end in seen.ends_at(SERVICE, f"{node}/change_state").clients)
-    return min((it for it in clients if not _asks_for_a_person(seen, it)), default="")
+    own = (it for it in clients if not (is_viewer(it) or is_tool(seen.plain(it))))
+    return min(own, default="")
 
 
 @system_rule("MG512", "interface-commanded-twice", ERROR)
@@ -180,15 +181,13 @@ def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
 @system_rule("MG302", "managed-twice", ERROR)
 def managed_twice(seen: Index) -> Iterator[Finding]:
     """Report all nodes with the same managers as one finding; an operator's tool does not count."""
-    asked = [it for it in seen.by_name.values() if it.kind == SERVICE]
-    managed = lists_by_key(
-        (
-            nodes_of(it for it in ends.clients if not _asks_for_a_person(seen, it.node)),
-            ends.name.removesuffix(words.CHANGE_STATE),
-        )
-        for ends in asked
-        if ends.name.endswith(words.CHANGE_STATE)
-    )
+    managed: dict[Sequence[str], list[str]] = defaultdict(list)
+    for ends in seen.by_name.values():
+        if ends.kind == SERVICE and ends.name.endswith(words.CHANGE_STATE):
+            # Not those that do as a person wants.
+            own = (it for it in ends.clients if not is_viewer(it.node))
+            asked = nodes_of(it for it in own if not is_tool(seen.plain(it.node)))
+            managed[asked].append(ends.name.removesuffix(words.CHANGE_STATE))
     for managers, nodes in managed.items():
         if len(managers) > 1:
             message = f"{and_then(managers)} all manage the life cycle of {shorten(sorted(nodes))}"
@@ -206,11 +205,6 @@ def managed_twice(seen: Index) -> Iterator[Finding]:
                 message, **cause._asdict(),
                 robot=robot, node=managers[0], names=(*managers, *services),
             )  # fmt: skip
-
-
-def _asks_for_a_person(seen: Index, node: str) -> bool:
-    """Return whether a node changes states as a person wants it."""
-    return is_viewer(node) or is_tool(seen.plain(node))
 
 
 # What is done with it, what it is called besides its kind, and who does not give it.

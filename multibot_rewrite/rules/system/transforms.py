@@ -23,7 +23,7 @@ from multibot_rewrite.rules.system.planned_frames import with_more_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import SUBSCRIBES, Edge, End
+from multibot_rewrite.system.records import SUBSCRIBES, Edge
 from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.words import last_word
 
@@ -220,7 +220,7 @@ def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
 def _take_away(
     left: dict[str, set[str]], below: Mapping[str, Iterable[str]], gone: list[str]
 ) -> None:
-    """Remove frames and those that only lead to them: each way that is ``left`` has no end."""
+    """Remove ``gone`` frames from ``left``, and the frames from which there is no other way."""
     out = {*gone}
     for parent in gone:  # grows
         del left[parent]
@@ -253,7 +253,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG408", "transform-of-two-senders", ERROR)
 def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
-    """Report all such transforms of a tree as one, unless robots' frames collide."""
+    """Report transforms that several nodes send, one finding a robot, unless frames collide."""
     for tree in seen.trees:
         if collide(seen, tree):
             continue
@@ -333,13 +333,10 @@ def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Se
     """Return the nodes that can send one of these transforms; all if fewer than two are left."""
     found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
     if all(seen.plain_frame(it.parent) in WORLD_FRAMES for it in edges):
-        seeing = [it for it in found if any(end.type in _SEEN for end in _subscriptions(seen, it))]
-        found = seeing if len(seeing) > 1 else found
+        ends = (one for it in found for one in seen.by_node.get(it, ()) if one.type in _SEEN)
+        seeing = unique(it.node for it in ends if it.role == SUBSCRIBES)
+        found = [*seeing] if len(seeing) > 1 else found
     return found if len(found) > 1 else nodes
-
-
-def _subscriptions(seen: Index, node: str) -> Sequence[End]:
-    return [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:
@@ -349,7 +346,7 @@ def _can_send(seen: Index, node: str, edge: Edge) -> bool:
         return above not in SENT_FRAMES
     if word.startswith(_STATIC):
         return edge.static
-    read = _subscriptions(seen, node)
+    read = [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
     if any(words.is_start_pose(seen.plain(it.name), it.type) for it in read):
         return above in WORLD_FRAMES
     drives = any(words.moves(it.name, it.type) for it in read)

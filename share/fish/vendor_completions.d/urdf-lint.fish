@@ -1,5 +1,6 @@
 # Made by share/make.py.
 complete -c urdf-lint -l version -d 'show the version'
+complete -c urdf-lint -l lsp -d 'serve an editor by the Language Server Protocol on standard input and output: findings while typing, fixes, hover, definition, references, rename (docs/lint.md)'
 complete -c urdf-lint -l config -r -d 'urdf-lint.toml or pyproject.toml'
 complete -c urdf-lint -l changed-since -r -d 'only files that changed since a git revision'
 complete -c urdf-lint -l no-default-excludes -d 'in folders, also read build/, install/, log/, folders with COLCON_IGNORE or AMENT_IGNORE, and files that git ignores'

@@ -104,7 +104,7 @@ def followed(
     after: str | None = None,
     **options: Any,
 ) -> Followed:
-    layout, distro = layout_and_distro.split()
+    layout, _, distro = layout_and_distro.partition(" ")
     return Followed(text, layout, distro, code, hint, text if after is None else after, options)
 
 
@@ -113,8 +113,8 @@ ROWS = (
     followed(ESTOP, "postfix jazzy", "MG301", "--layout tf-per-robot or both", layout="both"),
     followed(ABB, "postfix humble", "MB428", "--layout tf-per-robot", layout="tf-per-robot"),
     *(
-        followed(MOTOR, f"{it} jazzy", code, "--layout", layout="frame-prefix")
-        for it, code in (("postfix", "MB428"), ("both", "MB428"), ("tf-per-robot", "MB437"))
+        followed(MOTOR, f"{it} jazzy", "MB428", "--layout", layout="frame-prefix")
+        for it in ("postfix", "both")
     ),
     followed(PX4, "postfix jazzy", "MB428", "frame-prefix", layout="frame-prefix"),
     followed(
@@ -156,7 +156,7 @@ ROWS = (
     ),
     followed(
         DRIVE,
-        "tf-per-robot humble",
+        "tf-per-robot",
         "MG320",
         "--layout frames-per-robot",
         layout="frames-per-robot",

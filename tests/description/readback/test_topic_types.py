@@ -7,7 +7,7 @@ Sources: ros-simulation/gazebo_ros_pkgs ros2 gazebo_plugins/src, unless a line s
 from __future__ import annotations
 
 import pytest
-from description_calls import NEWEST_LTS, RuntimeName, check_definitions, load_definitions, read
+from description_calls import NEWEST_LTS, TYPES, RuntimeName, load_definitions, read
 
 ODOM, TWIST, TF = "nav_msgs/msg/Odometry", "geometry_msgs/msg/Twist", "tf2_msgs/msg/TFMessage"
 IMAGE, INFO, CLOUD = (f"sensor_msgs/msg/{it}" for it in ("Image", "CameraInfo", "PointCloud2"))
@@ -200,7 +200,7 @@ UNTYPED = {*PID, "pid/articulation_joint", "collisions", "cmd_drive"}
 
 @pytest.mark.slow
 def test_every_topic_of_a_plugin_that_is_a_node_has_a_type() -> None:
-    sections = check_definitions(load_definitions((), NEWEST_LTS, packages=False))
+    sections = load_definitions((), NEWEST_LTS, packages=False).sections(*TYPES)
     nodes = [it for it in sections if any(site.path == "ros/namespace" for site in it.sites)]
     missing = {it.name for section in nodes for it in section.wired if not it.type}
     assert missing == UNTYPED

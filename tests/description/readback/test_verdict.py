@@ -116,10 +116,60 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
             DRIVE.format("{name}"),
             ("1 command shared by all robots", "1 node shared by all robots"),
         ),
+        # sdformat plugin.sdf: without a filename nothing is loaded.
+        (LIDAR.format("x").replace("<sensor", '<plugin name="gazebo_ros_control"/><sensor'), ()),
     ],
 )
 def test_a_rewrite_says_why_it_is_not_proved(text: str, why: tuple[str, ...]) -> None:
     assert rewrite(text, "robot1", layout="tf-per-robot").not_verified == why
+
+
+@pytest.mark.parametrize(
+    ("distro", "why"), [("", ("1 topic shared by all robots",)), ("humble", ())]
+)
+def test_ros_2_loads_no_plugin_that_gazebo_ros_pkgs_had_for_ros_1(
+    distro: str, why: tuple[str, ...]
+) -> None:
+    """The branch ros2 of gazebo_ros_pkgs has no gazebo_ros_skid_steer_drive; ROS 1's sends on /tf."""
+    text = DRIVE.replace("gazebo_ros_diff", "gazebo_ros_skid_steer")
+    text = text.replace("<ros><namespace>{}</namespace></ros>", "<broadcastTF>true</broadcastTF>")
+    made = rewrite(text, "robot1", layout="tf-per-robot", distro=distro)
+    assert made.not_verified == why
+    assert ("MB112" in {it.code for it in made.findings}) == bool(distro)
+
+
+@pytest.mark.parametrize(
+    ("layout", "shared"), [("postfix", ()), ("tf-per-robot", ("1 resource shared by all robots",))]
+)
+def test_images_of_a_camera_begin_with_its_name(layout: str, shared: tuple[str, ...]) -> None:
+    """gz-sensors CameraSensor.cc: saveImagePrefix is the sensor's name."""
+    text = LIDAR.format("x").replace("gpu_lidar", "camera").replace("<topic>x</topic>", "{}")
+    text = text.format("<camera><save enabled='true'><path>/tmp/a</path></save></camera>")
+    assert rewrite(text, "robot1", layout=layout).not_verified == shared
+
+
+def test_ros_1_gives_no_plugin_a_node_of_its_own() -> None:
+    """uuv_simulator has them for ROS 1, Plankton for ROS 2, which reads the <ros> that is inserted."""
+    text = DRIVE.replace("gazebo_ros_diff_drive", "gazebo_ros_control").format("x")
+    text = text.replace("<ros><namespace>x</namespace></ros>", "")
+    uuv = '<gazebo><plugin name="{0}" filename="libuuv_{0}_plugin.so">{1}</plugin></gazebo></robot>'
+    space = "<robot_namespace>a</robot_namespace><link_name>a</link_name>"
+    for plugin in (("gazebo_ros_gps", space), ("underwater_object_ros", "")):
+        text = text.replace("</robot>", uuv.format(*plugin))
+    found = rewrite(text, "robot1", layout="tf-per-robot").findings
+    assert "MG301" not in {it.code for it in found}
+
+
+def test_a_sensor_below_its_own_model_is_no_other_robots() -> None:
+    """kobuki's plugin looks for the bumper in the world, and for world::model::base_footprint::imu
+    (kobuki_gazebo_plugins gazebo_ros_kobuki_loads.cpp)."""
+    names = "<imu_name>imu</imu_name><bumper_name>bumper</bumper_name>"
+    sensors = '<sensor name="imu" type="imu"/><sensor name="bumper" type="contact"/>'
+    text = DRIVE.replace("gazebo_ros_diff_drive", "gazebo_ros_kobuki").format("x")
+    text = text.replace("<ros><namespace>x</namespace></ros>", names)
+    text = text.replace("</robot>", f'<gazebo reference="a">{sensors}</gazebo></robot>')
+    found = rewrite(text, "robot1", layout="frame-prefix").findings
+    assert ["'bumper'" in it.message for it in found if it.code == "MB425"] == [True]
 
 
 @pytest.mark.more

@@ -12,7 +12,6 @@ from description_calls import (
     TYPES,
     PluginDefinition,
     builtin_tree,
-    check_definitions,
     load_definitions,
 )
 from paths import fixture_text
@@ -34,13 +33,13 @@ def write(folder: Path, text: str) -> str:
 def complaint(path: str) -> str:
     """Return what the loader says about a file, wherever it notices."""
     with pytest.raises(DefinitionsError) as caught:
-        check_definitions(load_definitions((path,), NEWEST_LTS))
+        load_definitions((path,), NEWEST_LTS).sections(*TYPES)
         builtin_tree((path,), NEWEST_LTS)
     return str(caught.value)
 
 
 def builtin() -> list[PluginDefinition]:
-    return check_definitions(load_definitions((), NEWEST_LTS))
+    return load_definitions((), NEWEST_LTS).sections(*TYPES)
 
 
 @pytest.mark.parametrize(
@@ -212,7 +211,7 @@ def test_every_builtin_section_says_what_it_is() -> None:
 @pytest.mark.parametrize("release", RELEASES)
 def test_a_name_is_one_in_releases_that_read_its_value(release: str) -> None:
     definitions = load_definitions((), release)
-    for section in (it for it in check_definitions(definitions) if it.type == "plugin"):
+    for section in definitions.sections("plugin"):
         values = definitions.values(section.names[0], section.ros == ROS_1)
         for site in (it for it in section.sites if values and it.role != "keep"):
             row = values.rows.get(site.path)

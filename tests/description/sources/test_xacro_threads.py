@@ -81,7 +81,7 @@ def test_a_fork_does_not_talk_to_the_server_of_its_parent(file: Path) -> None:
 @pytest.mark.slow
 def test_an_idle_server_that_ended_is_started_again(file: Path) -> None:
     text = rewrite(file, "robot1").text
-    server = processes._server(os.getpid())
+    server = processes.server(os.getpid())
     server.control.close()
     assert rewrite(file, "robot1").text == text
 

@@ -30,7 +30,6 @@ __all__ = [
     "Value",
     "Values",
     "advice",
-    "check_definitions",
     "is_step",
     "load_definitions",
     "split_path",
@@ -76,8 +75,3 @@ def _file_text(name: str, path: str) -> str:
         raise DefinitionsError(
             f"{name}: cannot be read: it is not UTF-8; save it as UTF-8"
         ) from None
-
-
-def check_definitions(definitions: Definitions) -> list[PluginDefinition]:
-    """Parse every section; raises DefinitionsError for the first mistake."""
-    return definitions.sections(*TYPES)

@@ -3,7 +3,8 @@
 
 Calls that open files are left where Landlock says which. Sources: Linux,
 Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
-include/uapi/asm-generic/unistd.h. Memory is as in OpenSSH, sandbox-seccomp-filter.c."""
+include/uapi/asm-generic/unistd.h. Arguments are restricted as in OpenSSH, sandbox-seccomp-filter.c,
+and Chromium, sandbox/linux/seccomp-bpf-helpers."""
 
 import ctypes
 import errno
@@ -13,6 +14,7 @@ import struct
 import sys
 from collections.abc import Mapping
 from functools import cache
+from itertools import islice
 from typing import NamedTuple
 
 _SET_PDEATHSIG, _SET_DUMPABLE, _SET_NO_NEW_PRIVS = 1, 4, 38
@@ -45,29 +47,36 @@ _SET_SECCOMP, _MODE_FILTER = 22, 2
 # Instructions: load a word, compare, compare bits, answer.
 _LOAD, _EQUAL, _AT_LEAST, _ANY_BIT, _ANSWER = 0x20, 0x15, 0x35, 0x45, 0x06
 _KILL, _ALLOW, _REFUSE = 0x80000000, 0x7FFF0000, 0x00050000 | errno.EPERM
-# Offsets in the record of a call: its number, the architecture, the low half of the third argument.
-_NUMBER, _ARCHITECTURE, _SECOND, _THIRD = 0, 4, 24, 32
-_PROTECTED = 0xFFFFFFFF & ~3
+# Offsets in the record of a call: its number, the architecture, the low halves of its arguments.
+_NUMBER, _ARCHITECTURE, _FIRST, _SECOND, _THIRD, _FOURTH = 0, 4, 16, 24, 32, 40
 # Numbers from here on are the other interface (x32) of the same processor.
 _X32 = 0x40000000
 
 
 # Flags of openat: to write, and to cut the file off, which older versions of Landlock let through.
 _WRITING, _CUTTING = os.O_WRONLY | os.O_RDWR, os.O_TRUNC
-# What the second argument may be. Of futex: to wait and to wake, without priorities, in which the
-# kernel had faults (CVE-2014-3153). Of ioctl and fcntl: that no other program gets an open file, and
-# a second number for it. Who gets signals for it is asked in the same way.
+# Bits that mmap and mprotect may not have: memory is read and written alone, and of usual pages.
+_NEITHER = ((_THIRD, 0xFFFFFFFF & ~3), (_FOURTH, 0xFFFFFFFF & ~0x24833))
+# What an argument may be. Of futex: to wait and to wake, without priorities, in which the kernel had
+# faults (CVE-2014-3153). Of madvise: usual, random, not needed. Of clock_gettime: no other process's.
+# Of getrandom: to wait or not. Of ioctl and fcntl: that no other program gets an open file, and a
+# second number for it. Who gets signals for it is asked in the same way.
 _ASKED = (
-    (0, 1, 3, 4, 5, 9, 10, 128, 129, 131, 132, 133, 137, 138, 265, 393),
-    (0x5451,),
-    (0, 1, 2, 3, 1030),
+    (_SECOND, 0, 1, 3, 4, 5, 9, 10, 128, 129, 131, 132, 133, 137, 138, 265, 393),
+    (_THIRD, 0, 1, 4, 8),
+    (_FIRST, *range(8)),
+    (_THIRD, 0, 1),
+    (_SECOND, 0x5451),
+    (_SECOND, 0, 1, 2, 3, 1030),
 )
+# So many of them are for whoever opens no files.
+_COMPUTING = 4
 
 
 class Machine(NamedTuple):
-    """An architecture's audit number and allowed calls; ``memory``: to read and write it alone.
+    """An architecture's audit number and allowed calls; ``memory``: mmap and mprotect.
 
-    ``opens`` is openat; ``asks`` are futex, and for files ioctl and fcntl."""
+    ``opens`` is openat; ``asks`` are those of which ``_ASKED`` has arguments."""
 
     audit: int
     calls: tuple[int, ...]
@@ -77,16 +86,15 @@ class Machine(NamedTuple):
     asks: tuple[int, ...]
 
 
-def _parse_numbers(numbers: str) -> tuple[int, ...]:
-    return tuple(map(int, numbers.split()))
+def _numbers_in(text: str) -> tuple[int, ...]:
+    return tuple(map(int, text.split()))
 
 
-_NUMBERS = {
+_CALLS = {
     # read write close lseek munmap brk rt_sigaction rt_sigprocmask rt_sigreturn sched_yield mremap
-    # madvise getpid exit gettimeofday sigaltstack gettid restart_syscall clock_gettime
-    # exit_group getrandom
-    "x86_64": "0 1 3 8 11 12 13 14 15 24 25 28 39 60 96 131 186 219 228 231 318",
-    "aarch64": "63 64 57 62 215 214 134 135 139 124 216 233 172 93 169 132 178 128 113 94 278",
+    # getpid exit gettimeofday sigaltstack gettid restart_syscall exit_group
+    "x86_64": "0 1 3 8 11 12 13 14 15 24 25 39 60 96 131 186 219 231",
+    "aarch64": "63 64 57 62 215 214 134 135 139 124 216 172 93 169 132 178 128 94",
 }
 _FILES = {
     # stat fstat lstat pread64 pwrite64 readv writev access dup nanosleep uname fsync fdatasync
@@ -95,29 +103,22 @@ _FILES = {
     # clock_nanosleep mkdirat newfstatat unlinkat renameat readlinkat faccessat renameat2 statx
     # faccessat2
     "x86_64": (
-        "4 5 6 17 18 19 20 21 32 35 63 74 75 77 78 79 80 82 83 84 87 89 98 99",
-        "100 102 104 107 108 110 204 217 229 230 258 262 263 264 267 269 316 332 439",
+        "4 5 6 17 18 19 20 21 32 35 63 74 75 77 78 79 80 82 83 84 87 89 98 99"
+        " 100 102 104 107 108 110 204 217 229 230 258 262 263 264 267 269 316 332 439"
     ),
     # The same but for those that only older processors have.
     "aarch64": (
-        "80 67 68 65 66 23 101 160 82 83 46 17 49 165 179 153 174 176 175 177 173",
-        "123 61 114 115 34 79 35 38 78 48 276 291 439",
+        "80 67 68 65 66 23 101 160 82 83 46 17 49 165 179 153 174 176 175 177 173"
+        " 123 61 114 115 34 79 35 38 78 48 276 291 439"
     ),
 }
-# The number of the architecture; mmap and mprotect; openat; futex, ioctl and fcntl.
+# The number of the architecture; mmap and mprotect; openat; those of which _ASKED has arguments.
 _KINDS: Mapping[str, tuple[int, tuple[int, int], int, tuple[int, ...]]] = {
-    "x86_64": (0xC000003E, (9, 10), 257, (202, 16, 72)),
-    "aarch64": (0xC00000B7, (222, 226), 56, (98, 29, 25)),
+    "x86_64": (0xC000003E, (9, 10), 257, (202, 28, 228, 318, 16, 72)),
+    "aarch64": (0xC00000B7, (222, 226), 56, (98, 233, 113, 278, 29, 25)),
 }
 MACHINES: Mapping[str, Machine] = {
-    name: Machine(
-        audit,
-        _parse_numbers(_NUMBERS[name]),
-        memory,
-        _parse_numbers(" ".join(_FILES[name])),
-        opens,
-        asks,
-    )
+    name: Machine(audit, _numbers_in(_CALLS[name]), memory, _numbers_in(_FILES[name]), opens, asks)
     for name, (audit, memory, opens, asks) in _KINDS.items()
 }
 
@@ -150,14 +151,11 @@ def filter_program(machine: Machine, files: bool = False) -> bytes:
     more = (*machine.files, *machine.memory) if files else ()
     for number in (*machine.calls, *more):
         steps += [(_EQUAL, 0, 1, number), (_ANSWER, 0, 0, _ALLOW)]
-    for number in () if files else machine.memory:
-        steps += [
-            (_EQUAL, 0, 4, number),
-            (_LOAD, 0, 0, _THIRD),
-            (_ANY_BIT, 1, 0, _PROTECTED),
-            (_ANSWER, 0, 0, _ALLOW),
-            (_ANSWER, 0, 0, _REFUSE),
-        ]
+    for number, bits in () if files else zip(machine.memory, (_NEITHER, _NEITHER[:1]), strict=True):
+        steps += [(_EQUAL, 0, 2 * len(bits) + 2, number)]
+        for at, (place, mask) in enumerate(bits):
+            steps += [(_LOAD, 0, 0, place), (_ANY_BIT, 2 * (len(bits) - at) - 1, 0, mask)]
+        steps += [(_ANSWER, 0, 0, _ALLOW), (_ANSWER, 0, 0, _REFUSE)]
     if files:
         steps += [
             (_EQUAL, 0, 5, machine.opens),
@@ -167,8 +165,9 @@ def filter_program(machine: Machine, files: bool = False) -> bytes:
             (_ANSWER, 0, 0, _ALLOW),
             (_ANSWER, 0, 0, _REFUSE),
         ]
-    for number, words in zip(machine.asks if files else machine.asks[:1], _ASKED, strict=False):
-        steps += [(_EQUAL, 0, len(words) + 3, number), (_LOAD, 0, 0, _SECOND)]
+    asked = zip(machine.asks, _ASKED, strict=True)
+    for number, (place, *words) in islice(asked, None if files else _COMPUTING):
+        steps += [(_EQUAL, 0, len(words) + 3, number), (_LOAD, 0, 0, place)]
         steps += [(_EQUAL, len(words) - at, 0, word) for at, word in enumerate(words)]
         steps += [(_ANSWER, 0, 0, _REFUSE), (_ANSWER, 0, 0, _ALLOW)]
     steps.append((_ANSWER, 0, 0, _REFUSE))
