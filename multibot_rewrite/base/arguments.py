@@ -40,23 +40,21 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
     needed = {it.name for it in named if it.default is Parameter.empty}
     in_order = [it.name for it in named if it.kind is not Parameter.KEYWORD_ONLY]
 
+    by_name: Callable[..., R] = call
+
     @wraps(call)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
         values: dict[str, Any] = dict(zip(in_order, args, strict=False)) | kwargs
         # inspect takes longer to bind arguments than all readers do: most calls do not need it.
         if len(values) == len(args) + len(kwargs) and needed <= values.keys() <= names:
             read = {name: readers[name](f"{title}: {name}", it) for name, it in values.items()}
-            return _call_with(call, read)
+            return by_name(**read)
         given = _bound(takes, title, args, kwargs)
         for name, value in given.arguments.items():
             given.arguments[name] = readers[name](f"{title}: {name}", value)
         return call(*given.args, **given.kwargs)
 
     return run
-
-
-def _call_with(call: Callable[..., R], values: Mapping[str, Any]) -> R:
-    return call(**values)
 
 
 def _bound(takes: Signature, title: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:

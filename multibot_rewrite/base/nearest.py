@@ -95,7 +95,7 @@ def did_you_mean(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
 
 
 def did_you_mean_one_of(word: str, choices: Iterable[str], alike: float = CHOICE) -> str:
-    """Return the hint for a word of a short list: less alike will do, and the beginning of one.
+    """Return the hint which of a few choices was meant: it may be less alike, or only begin so.
 
     Where the word is the first part of several (shared: shared_frames, shared_topics), it has all.
     """
@@ -166,6 +166,6 @@ def typing_mistakes(one: str, other: str, most: int = 3) -> int:
 
 @cache
 def other_words(what: str) -> Mapping[str, str]:
-    """Return the table of ``commands``, ``options`` or ``keys``: each word, and what does it."""
+    """Return the table of ``commands``, ``options`` or ``keys``: a word of other tools, and ours."""
     words: Mapping[str, str] = load_own_yaml(__file__, "other_words.yaml")[what]
     return words

@@ -388,7 +388,7 @@ def _first_difference(planned: Any, printed: Any, where: str = "") -> tuple[str,
     # It differs for values of other types, which are equal.
     if repr(planned) == repr(printed):
         return None
-    if type(planned) is not type(printed) or not _is_dict_or_list(planned):
+    if type(planned) is not type(printed) or not isinstance(planned, dict | list):
         return where, planned, printed
     if isinstance(planned, dict):
         keys = dict.fromkeys((*planned, *printed))
@@ -398,10 +398,6 @@ def _first_difference(planned: Any, printed: Any, where: str = "") -> tuple[str,
         both = enumerate(zip_longest(planned, printed, fillvalue=_NOTHING))
         every = ((f"{where}[{at}]", one, other) for at, (one, other) in both)
     return next(filter(None, (_first_difference(one, other, at) for at, one, other in every)), None)
-
-
-def _is_dict_or_list(it: Any) -> bool:
-    return isinstance(it, dict | list)
 
 
 def _shown(it: Any) -> str:

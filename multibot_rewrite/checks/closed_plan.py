@@ -103,7 +103,7 @@ def left_open(
     whose: Whose,
     texts: Sequence[OutputFile] = (),
 ) -> Iterator[Finding]:
-    """Yield what is open in a robot: warnings by its sources, errors if its rewrite opened it."""
+    """Yield what a robot lacks: warnings by its sources, errors if only its rewrite lacks it."""
     # As it is written, with the needs that its sources have.
     needed = _ends_by_key(before, (it for it in before.ends if it.role in NEEDS))
     keys = {id(it): key for key, it in _ends_by_key(after, after.ends).items()}
@@ -226,7 +226,7 @@ def closed_plan(plan: FleetPlan) -> Fleet:
 
 
 def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
-    """Return the topics that bridge files among ``texts`` carry, but those of maybe real robots."""
+    """Return the topics that bridge files among ``texts`` carry, but of no robot that may be real."""
     # The shared one is left out if all robots may be real.
     maybe = plan.fleet.maybe_real
     real = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}

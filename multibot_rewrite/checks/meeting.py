@@ -224,7 +224,7 @@ _KINDS = ("topic", "service")
 def declared_twice(
     robots: Iterable[RewrittenRobot], naming: Naming, told: Iterable[Finding]
 ) -> Iterator[Finding]:
-    """Yield what two robots declare, but no shared name and no frame that ``told`` reports."""
+    """Yield findings for names that two robots declare, except shared names and frames in ``told``."""
     met = {name for it in told if it.code == FRAMES_COLLIDE for name in it.names}
     first: dict[tuple[str, str], RewrittenRobot] = {}
     kinds = [it for it in _DECLARED if it in naming.separators]

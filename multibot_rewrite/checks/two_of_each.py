@@ -132,13 +132,15 @@ def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
     names = {it.name for it in left}
     files = [it for it in made.files if it.path.partition("/")[0] not in names]
 
-    def kept(one: re.Match[str]) -> str:
+    def unless_left_out(one: re.Match[str]) -> str:
         return "" if one[1] in names else one[0]
 
     for at, it in enumerate(files):
         if it.path == LAUNCH:
-            above, table, rows = _FUNCTION.sub(kept, it.text).partition(_TABLE)
-            files[at] = it._replace(data=f"{above}{table}{_ROW.sub(kept, rows)}".encode())
+            above, table, rows = _FUNCTION.sub(unless_left_out, it.text).partition(_TABLE)
+            files[at] = it._replace(
+                data=f"{above}{table}{_ROW.sub(unless_left_out, rows)}".encode()
+            )
     planned = _plan_without(made.planned, names)
     return made._replace(files=tuple(files), planned=planned) if left else made
 
@@ -154,18 +156,18 @@ def _plan_without(plan: System, robots: Collection[str]) -> System:
         owner = whose_by_plan(plan).robot
         gone |= {it: owner(it) in robots for it in others}
 
-    def kept(records: Iterable[Any]) -> tuple[Any, ...]:
+    def of_other_nodes(records: Iterable[Any]) -> tuple[Any, ...]:
         return tuple(it for it in records if it.node not in names)
 
     return plan._replace(
         nodes=tuple(it for it in plan.nodes if it.robot not in robots),
-        ends=kept(plan.ends),
+        ends=of_other_nodes(plan.ends),
         edges=tuple(it for it in plan.edges if not it.publishers or not names >= {*it.publishers}),
         robots=tuple(it for it in plan.robots if it.name not in robots),
         topics=tuple(it for it in plan.topics if not gone[it.name]),
-        parameters=kept(plan.parameters),
+        parameters=of_other_nodes(plan.parameters),
         controllers=tuple(it for it in plan.controllers if it.manager not in names),
-        interfaces=kept(plan.interfaces),
-        lookups=kept(plan.lookups),
-        addresses=kept(plan.addresses),
+        interfaces=of_other_nodes(plan.interfaces),
+        lookups=of_other_nodes(plan.lookups),
+        addresses=of_other_nodes(plan.addresses),
     )

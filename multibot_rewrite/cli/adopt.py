@@ -44,7 +44,7 @@ def _print_result(options: argparse.Namespace, made: Adopted) -> None:
         note(options, f"{path}: {what}; verified")
     if made.namespace:
         where = plural(len(made.spaced), "description")
-        note(options, f"argument {made.namespace}: what ROS names in {where}; verified")
+        note(options, f"argument {made.namespace}: namespaces and topics in {where}; verified")
     for it in made.launches:
         given = made.namespace and f"{made.namespace}:=".encode() in made.after[it]
         what = f"{made.argument} and {made.namespace}" if given else made.argument

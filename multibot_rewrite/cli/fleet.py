@@ -100,7 +100,9 @@ def _fleet_of_words(options: argparse.Namespace) -> Fleet:
     names = robots(options)
     if not names:
         refuse_others(read_file(options.input), options.input, *DESCRIPTIONS)
-        raise UsageError("no ROBOT given, and the input is no fleet file (*.yaml)")
+        raise UsageError(
+            "no ROBOT given; write robots' names after the input, or give a fleet file (*.yaml)"
+        )
     check_xacro(options, [options.input])
     if doubt := release_doubt(options.distro):
         note(options, f"warning: {doubt}")

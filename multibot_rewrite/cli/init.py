@@ -138,7 +138,7 @@ def _launch_orders(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | Non
     whole = bool(words[1:]) or os.path.isfile(text)
     order = order_in_words(words, text, roots) if whole else launch_order(text, roots)
     if not os.path.isfile(order.file):
-        raise UsageError(f"{order.file}: there is no such launch file")
+        raise UsageError(f"{order.file}: there is no such launch file; correct --launch")
     if any(is_below(order.file, it) for it in roots):
         order = order._replace(package="", roots=(), file=os.path.relpath(order.file))
     return (order._replace(trusted=options.trust),)

@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     if len(words) == 1 and node_source.is_program(words[0]):
         return node_source.run(options, words[0])
     paths = any(map(_is_path, words))
-    if not paths and are_codes(words):
+    if not paths and any(map(_CODE.fullmatch, _split_codes(words))):
         return explain(options, words)
     if len(words) > 1 or xacro_args(options) or paths:
         return try_arguments(options, words)
@@ -236,11 +236,6 @@ def draft(options: argparse.Namespace) -> int:
 MOST_EXPLAINED = 10
 # MB202, as it begins (mb2), and what is nearly one.
 _CODE = re.compile(r"M[A-Z](\d\w*)?", re.IGNORECASE)
-
-
-def are_codes(words: Sequence[str]) -> bool:
-    """Return whether there is a code among the arguments, or they are the name of a rule."""
-    return any(map(_CODE.fullmatch, _split_codes(words)))
 
 
 def is_name(word: str) -> bool:

@@ -125,8 +125,8 @@ def _values_for_parts(
         return list(values)
     if not values or len(values) == many - 1:
         return ["", *(values or [""] * (many - 1))]
-    parts = f"{plural(many - 1, 'part')} behind the first"
-    what = f"{option} is there {plural(len(values), 'time')} for {parts}"
+    parts = f"{plural(many - 1, 'part')} after the first"
+    what = f"{option} is given {plural(len(values), 'time')} for {parts}"
     raise UsageError(f'{what}; write it once for each, in their order, {option} "" for none')
 
 

@@ -76,7 +76,7 @@ def _printed_details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
         (
             it.role,
             it.name,
-            "; ".join((it.type, *(f"{type_} if {readable(why)}" for why, type_ in it.types))),
+            "; ".join((it.type, *(f"{type_} if {readable(when)}" for when, type_ in it.types))),
             it.parameter,
             readable(it.when),
             _source_text(it, folder),

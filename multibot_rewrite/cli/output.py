@@ -102,14 +102,14 @@ def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]])
     """Write all (path, data) or none; ``--verbose`` names them."""
     written: list[str] = []
 
-    def noted() -> Iterable[tuple[str, bytes]]:
+    def noting_paths() -> Iterable[tuple[str, bytes]]:
         for path, data in items:
             written.append(path)
             yield path, data
 
     from multibot_rewrite.cli.files import write_all  # most commands of a lint write none
 
-    write_all(noted())
+    write_all(noting_paths())
     for path in written:
         detail(options, f"wrote {path}")
 

@@ -123,7 +123,7 @@ def _run_guarded(program: str, run: Callable[[], int], own_process: bool) -> int
                 signal.signal(signal.SIGHUP, signal.default_int_handler)
         return run()
     except ProofError as error:
-        fault = "verification failed, nothing was written; this is a fault of the tool"
+        fault = "verification failed, nothing was written; this is a fault of the tool, report it"
         say(f"{fault}: {error}", program)
         return STOPPED
     except MultibotError as error:

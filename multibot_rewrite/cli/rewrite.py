@@ -108,14 +108,14 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     if doubt := release_doubt(options.distro):
         tell(options, f"warning: {doubt}")
 
-    def made(naming: Mapping[str, Any]) -> Iterator[Rewrite]:
+    def rewrites_with(naming: Mapping[str, Any]) -> Iterator[Rewrite]:
         how = {**rewriting(options), **naming, "world_systems": options.world_systems}
         return rewrite_all(source, names, again=options.force, file=file, **how)
 
-    rewrites = made({})
+    rewrites = rewrites_with({})
     first = next(rewrites)
     if options.shared:
-        _check_shared(options, first, made)
+        _check_shared(options, first, rewrites_with)
     # Robots with descriptions or numbers of their own are all made before the first is here.
     is_numbered = any(it.code == NUMBERED for it in first.findings)
     others = list(rewrites) if first.prepared.job.naming.own or is_numbered else []
@@ -159,11 +159,11 @@ def _check_shared(
         if not kinds.isdisjoint(TOPIC_KINDS):
             names[TOPICS].add(name.text.strip("/"))
 
-    def result(given: Mapping[str, Any]) -> object:
+    def result_with(given: Mapping[str, Any]) -> object:
         found = next(made(given))
         return found.data, found.findings
 
-    check_shared(options, (first.data, first.findings), result, names)
+    check_shared(options, (first.data, first.findings), result_with, names)
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:

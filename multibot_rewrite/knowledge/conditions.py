@@ -86,7 +86,7 @@ def words_in(text: str, kind: str) -> Iterator[str]:
 
 
 def _readable_term(term: str) -> str:
-    """Return a term as people read it; another reason, such as a file of parameters, as it is."""
+    """Return a term in words; a reason that is no term, such as a parameter file, as it is."""
     if _TERM.fullmatch(term) is None and term.partition(": ")[0] not in KINDS:
         return term
     it = _parse_term(term)

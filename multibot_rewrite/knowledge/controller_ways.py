@@ -24,7 +24,7 @@ class ControllerWay(NamedTuple):
 
     @property
     def of_manager(self) -> bool:
-        """Return whether rules of their manager, and so those in a plugin's tag, reach them."""
+        """Return whether the manager's rules, also those in a plugin's tag, reach its controllers."""
         return self.forwarded or self.process_wide
 
 

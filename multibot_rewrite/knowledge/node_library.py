@@ -121,7 +121,9 @@ def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
 def _all_nodes(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
     """Yield the nodes of a node set and of those it includes; raises UsageError for a circle."""
     if name in above:
-        raise UsageError(f"node set {name!r} includes itself: {' -> '.join((*above, name))}")
+        raise UsageError(
+            f"node set {name!r} includes itself, remove one: {' -> '.join((*above, name))}"
+        )
     node_set = library.node_sets[name]
     for other in node_set.include:
         yield from (_in_set(it, node_set) for it in _all_nodes(library, other, (*above, name)))

@@ -156,7 +156,7 @@ def survey(seen: Diagnosis) -> str:
         return ""
     if not names:
         nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
-        said = f"{nodes}, no name of a robot in them: one robot, or several that share all names"
+        said = f"{nodes}, no robot recognized by name: one, several that share all names, or none known"
     else:
         where = "what their frames have" if any(it.before for it in seen.robots) else ""
         where = "their namespaces" if any(it.namespace for it in seen.robots) else where

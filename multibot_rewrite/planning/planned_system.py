@@ -54,7 +54,7 @@ def expect(
     defaults = (frame.default.strip("/") for it in facts.values() for frame in it.frames)
     usual = dict.fromkeys((*(it for it in defaults if it and "<" not in it), *USUAL_FRAMES))
 
-    def robot(name: str) -> Robot:
+    def planned_robot(name: str) -> Robot:
         word, own = words.get(name, name), tuple(frames.get(name, ()))
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         known = {*own, *naming.shared_frames}
@@ -83,7 +83,7 @@ def expect(
     return System(
         nodes=tuple(_placed(nodes, table)),
         ends=tuple(dict.fromkeys(_planned(table))),
-        robots=tuple(map(robot, names)),
+        robots=tuple(map(planned_robot, names)),
         layout=table.layout,
         shared_topics=tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
         shared_frames=tuple(sorted(naming.shared_frames)),

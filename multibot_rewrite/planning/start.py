@@ -191,10 +191,10 @@ def in_order(starts: Sequence[Start]) -> Iterator[Led]:
         alike = leader >= 0 and it.needs in (starts[leader].needs, "")
         below.setdefault(leader if alike and leader != at else -1, []).append(at)
 
-    def led(at: int) -> Led:
-        return Led(starts[at], tuple(map(led, below.get(at, ()))))
+    def with_followers(at: int) -> Led:
+        return Led(starts[at], tuple(map(with_followers, below.get(at, ()))))
 
-    yield from map(led, below.get(-1, ()))
+    yield from map(with_followers, below.get(-1, ()))
 
 
 def start_of(it: Started, program: Program, parameters: tuple[Parameters, ...] = ()) -> Start:

@@ -295,7 +295,7 @@ def _asked_names(run: Run) -> _Names:
 
 
 def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:
-    """Return a name in a node's code, and the name below the namespace above its own."""
+    """Return a name in a node's code, and if resolved there, that name in the parent namespace."""
     above = namespace.rpartition("/")[0]
     return (name, f"{above}/{name.lstrip('/')}") if endpoint.above and above else (name,)
 

@@ -62,13 +62,12 @@ def bringup_as_named(order: LaunchOrder) -> Bringup:
     """Return the named launch file; raises InputError if it cannot be read or starts nothing."""
     # An argument that names the vendor's robot names each, if the file starts the same with it.
     graph = read_named(order).graph
-    each = tuple((name, _value_for_each(name, value)) for name, value in order.arguments)
+    given = tuple((name, _value_for_each(name, value)) for name, value in order.arguments)
+    each = order._replace(arguments=given)
     with suppress(InputError):
-        other = (
-            read_named(order._replace(arguments=each)).graph if each != order.arguments else graph
-        )
-        if each != order.arguments and _effects(other) == _effects(graph):
-            order, graph = order._replace(arguments=each), other
+        other = read_named(each).graph
+        if _effects(other) == _effects(graph):
+            order, graph = each, other
     return Bringup(order, graph, starts_simulator(graph))
 
 
@@ -148,13 +147,9 @@ def _with_own_arguments(
 def _included_files(read: Iterable[Reading]) -> frozenset[str]:
     """Return the paths of the launch files that another one includes."""
     files = {os.path.realpath(it.file): it.file for it in read}
-    named = (
-        os.path.realpath(one.file)
-        for it in read
-        for one in it.graph.includes
-        if os.path.realpath(one.file) != os.path.realpath(it.file)
-    )
-    return frozenset(files[it] for it in named if it in files)
+    pairs = ((it.file, one.file) for it in read for one in it.graph.includes)
+    named = ((os.path.realpath(outer), os.path.realpath(inner)) for outer, inner in pairs)
+    return frozenset(files[it] for outer, it in named if it in files and it != outer)
 
 
 def _switched_orders(

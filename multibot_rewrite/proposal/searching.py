@@ -232,6 +232,7 @@ def _with_kinds(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tupl
     kinds: dict[str, str] = {}
 
     def texts() -> Iterator[tuple[str, bytes]]:
+        """Yield path and bytes of each file, and note its kind."""
         for path in paths:
             data = data_of_file(path)
             kinds[path] = _field_of(path, data)

@@ -104,7 +104,7 @@ def root_sections(paths: Collection[str]) -> Iterator[Left]:
         if found := [(line, name) for line, name in every if name in own]:
             line, name = found[0]
             more = f", and {plural(len(found) - 1, 'section')} more" if len(found) > 1 else ""
-            why = f"{name!r} is for no node in a namespace{more}; write /**/{name}"
+            why = f"{name!r} matches no node in a namespace{more}; write /**/{name}"
             yield Left(f"{path}:{line}", why)
 
 

@@ -68,7 +68,7 @@ def one_for_a_cause(
 
 
 def subject_of(plan: Index, it: Finding) -> tuple[str, ...]:
-    """Return what is equal for a finding in the sources of a plan and in what runs of it."""
+    """Return the key by which a finding about a plan's sources and one about the graph are the same."""
     # The code, and the names without those of robots, or else the message.""
     return (it.code, *map(plan.plain, it.names)) if it.names else (it.code, it.message)
 

@@ -170,7 +170,7 @@ def _merged_caveats(looks: Sequence[Look]) -> Iterator[Caveat]:
     """Yield the limitations of each snapshot, without those that are checked again for all of them."""
     files = [look.file for look in looks]
     more = f" and {len(files) - _MANY} more" if len(files) > _MANY else ""
-    text = f"made of {len(files)} looks: {', '.join(files[:_MANY])}{more}"
+    text = f"made of {len(files)} snapshots: {', '.join(files[:_MANY])}{more}"
     yield Caveat("looks-merged", False, text)
     for look in looks:
         for caveat in look.snapshot.environment.caveats:

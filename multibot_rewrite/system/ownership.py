@@ -170,32 +170,34 @@ def without_name(plan: System) -> System:
 def renamed(system: System, new: Callable[[str], str]) -> System:
     """Return the system with its nodes, topics, services and actions under new names."""
 
-    def one(name: str) -> str:
+    def new_name(name: str) -> str:
         return new(name) if name else name
 
-    def each(names: Iterable[str]) -> tuple[str, ...]:
-        return tuple(map(one, names))
+    def new_names(names: Iterable[str]) -> tuple[str, ...]:
+        return tuple(map(new_name, names))
 
-    def changed(records: Iterable[Any], *fields: str) -> tuple[Any, ...]:
+    def with_new_names(records: Iterable[Any], *fields: str) -> tuple[Any, ...]:
         return tuple(
-            it._replace(**{field: one(getattr(it, field)) for field in fields}) for it in records
+            it._replace(**{field: new_name(getattr(it, field)) for field in fields})
+            for it in records
         )
 
-    senders = (it._replace(senders=each(it.senders)) for it in system.topics)
+    senders = (it._replace(senders=new_names(it.senders)) for it in system.topics)
     groups = (
-        it._replace(sure=it.sure._replace(instead=each(it.sure.instead))) for it in system.nodes
+        it._replace(sure=it.sure._replace(instead=new_names(it.sure.instead)))
+        for it in system.nodes
     )
-    edges = (it._replace(publishers=each(it.publishers)) for it in system.edges)
+    edges = (it._replace(publishers=new_names(it.publishers)) for it in system.edges)
     return system._replace(
-        nodes=changed(groups, "name", "taker"),
-        ends=changed(system.ends, "name", "node"),
-        edges=changed(edges, "topic"),
-        robots=changed(system.robots, "tf_topic"),
-        topics=changed(senders, "name"),
-        heard=changed(system.heard, "topic"),
-        descriptions=changed(system.descriptions, "topic"),
-        parameters=changed(system.parameters, "node"),
-        controllers=changed(system.controllers, "manager"),
+        nodes=with_new_names(groups, "name", "taker"),
+        ends=with_new_names(system.ends, "name", "node"),
+        edges=with_new_names(edges, "topic"),
+        robots=with_new_names(system.robots, "tf_topic"),
+        topics=with_new_names(senders, "name"),
+        heard=with_new_names(system.heard, "topic"),
+        descriptions=with_new_names(system.descriptions, "topic"),
+        parameters=with_new_names(system.parameters, "node"),
+        controllers=with_new_names(system.controllers, "manager"),
     )
 
 

@@ -93,7 +93,7 @@ class Question(NamedTuple):
 def questions(
     graph: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> Iterator[Question]:
-    """Yield whom to ask for what, but none of two nodes with one name: one answers for the other.
+    """Yield the questions for nodes, but none for two of one name: one answers for the other.
 
     ``parameters`` are those that are wanted of a node in addition to ``use_sim_time``, whatever it
     lists."""

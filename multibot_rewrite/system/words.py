@@ -125,7 +125,7 @@ def is_hidden(node: str) -> bool:
 
 
 def is_spawner(node: str) -> bool:
-    """Return whether a node loads controllers, and waits for a manager until then."""
+    """Return whether a node is a spawner, which loads controllers when their manager is there."""
     return last_word(node).startswith("spawner_")
 
 

@@ -407,7 +407,7 @@ def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) ->
         namespace="ns", spaced=("a", "b"), launches=("l", "m"), after=files, left=left
     ) == [
         "argument prefix: 1 description in 2 files; verified", top,
-        "argument ns: what ROS names in 2 descriptions; verified",
+        "argument ns: namespaces and topics in 2 descriptions; verified",
         "l: it hands prefix on; verified", "m: it hands prefix and ns on; verified",
         "left as they are: 1 place", "f:3: left as it is: it is odd",
     ]  # fmt: skip
@@ -514,7 +514,7 @@ def test_the_command_of_ros2() -> None:
     [
         (
             ProofError("x"), 1,
-            "verification failed, nothing was written; this is a fault of the tool: x",
+            "verification failed, nothing was written; this is a fault of the tool, report it: x",
         ),
         (UsageError("x"), 2, "x"), (InputError("x"), 2, "x"), (Unusable("x"), 4, "x"),
         (KeyboardInterrupt(), 130, "interrupted; no half-written file is left"),

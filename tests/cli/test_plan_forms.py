@@ -101,4 +101,4 @@ def test_a_robot_without_a_name_has_a_plan(
 
 def test_rules_are_of_a_robot_with_a_name(capsys: pytest.CaptureFixture[str]) -> None:
     code, _, err = run(capsys, ROVER, "--node-set", "nav2")
-    assert code == 2 and "no ROBOT given" in err
+    assert code == 2 and "no ROBOT given; write robots' names after the input" in err

@@ -233,7 +233,7 @@ def test_an_empty_file_adds_nothing() -> None:
         ("node_sets: {a: {include: [nav]}}", "node set 'nav' is not known; did you mean 'nav2'?"),
         (
             "node_sets:\n  a: {include: [b]}\n  b: {include: [a]}",
-            "mine.yaml:2: node set 'a' includes itself: a -> b -> a",
+            "mine.yaml:2: node set 'a' includes itself, remove one: a -> b -> a",
         ),
         (
             "node_sets: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",

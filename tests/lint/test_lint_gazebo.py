@@ -407,8 +407,9 @@ ADD = "add what is missing, or delete the element that needs it"
 RATE, FORMAT = "<update_rate>9</update_rate>", "<image><format>{}</format></image>"
 OF_CLASSIC = '<plugin name="p" filename="libgazebo_ros_camera.so"/>'
 SCAN = "<lidar><scan><horizontal>{}</horizontal></scan></lidar>"
-NO_EFFECT = "<{}> in the <gazebo> of a {} has no effect; it is read in that of a {}"
-NO_EFFECT += ": name it with reference="
+NO_EFFECT = (
+    "<{}> in the <gazebo> of a {} has no effect; name a {} with reference=, where it is read"
+)
 
 
 def check_said(inside: str, said: str, distro: str = "jazzy") -> None:

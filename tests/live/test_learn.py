@@ -396,9 +396,9 @@ def test_nodes_that_cannot_be_learned(names: list[str], namespace: str, said: st
         ((TOPIC, PUBLISHES, "/a b", TEXT), "topic name '/a b' in the graph: character 3"),
         (
             (SERVICE, PUBLISHES, "/x", TRIGGER),
-            "/driver publishes the service /x, which ROS has not",
+            "/driver publishes the service /x, which is impossible",
         ),
-        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which ROS has not"),
+        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which is impossible"),
     ],
 )
 def test_an_endpoint_that_no_node_can_have(end: tuple[str, str, str, str], said: str) -> None:

@@ -78,7 +78,7 @@ def test_what_one_look_doubts_stays_in_doubt_with_its_file() -> None:
     unsettled = Caveat("not-settled", True, "still changing")
     both = join(look(node("robot1", ONE)), look(node("robot2", TWO), caveats=(unsettled,)))
     assert Caveat("not-settled", True, "b.json: still changing") in both.environment.caveats
-    assert both.environment.caveats[0].message == "made of 2 looks: a.json, b.json"
+    assert both.environment.caveats[0].message == "made of 2 snapshots: a.json, b.json"
 
 
 def test_what_another_look_has_seen_is_no_doubt_any_more() -> None:

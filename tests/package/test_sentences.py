@@ -28,7 +28,7 @@ PAGES = (
 )
 # Texts of the code that are no message: XML, Python, the examples of rules, a list of words.
 NO_MESSAGE = re.compile(
-    r"</|/>|<sdf|^def |^ankle arm |^(running|planned|as planned): ", re.MULTILINE
+    r"</|/>|<sdf|^def |^ankle arm |^(running|planned|as planned): |^[\d ]+$", re.MULTILINE
 )
 
 

@@ -51,5 +51,5 @@ def test_one_without_nodes_is_refused(text: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("node", ["/a: 1", "a: {pkg: b}"])
 def test_what_is_no_node_is_refused_with_its_line(node: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"yaml:3: "):
+    with pytest.raises(InputError, match=r"yaml:3: node /?a needs its full name and keys"):
         read(tmp_path, f"structure:\n  nodes:\n    {node}\n")

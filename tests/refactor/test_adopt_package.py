@@ -192,7 +192,7 @@ def test_sections_of_parameters_are_told_where_there_is_a_namespace(package: Pat
     (told,) = adopt(str(package)).left
     assert (told.place, told.why) == (
         f"{package}/config/c.yaml:2",
-        "'controller_manager' is for no node in a namespace; write /**/controller_manager",
+        "'controller_manager' matches no node in a namespace; write /**/controller_manager",
     )
 
 

@@ -384,7 +384,10 @@ def test_arguments_go_to_the_xacro_before_them(
     ("words", "wanted"),
     [
         (["x:=1", "a.urdf"], "write it behind the xacro"),
-        (["a.urdf", "b.urdf", "--at", "x", "--at", "y"], "--at is there 2 times for 1 part"),
+        (
+            ["a.urdf", "b.urdf", "--at", "x", "--at", "y"],
+            "--at is given 2 times for 1 part after the first",
+        ),
         (["a.urdf", "b.urdf", "--at", "x", "--pose", "1 2 x"], "write six numbers"),
         (["a.urdf", "b.urdf", "--undo", "-o", "out"], "--undo takes one file"),
         (["a.urdf", "--undo"], "name a folder for them with -o parts/"),

@@ -11,6 +11,7 @@ import pytest
 from graph_examples import read_system
 
 from multibot_rewrite.rules.check import judge
+from multibot_rewrite.system.records import MAY, PUBLISHES
 
 TWIST = "geometry_msgs/msg/Twist"
 SCAN, IMU, TEXT = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Imu", "std_msgs/msg/String"
@@ -86,6 +87,18 @@ def test_of_plain_data_the_names_have_something_in_common(
         f"/robot1/{other} publishes /robot1/{sent} {pose} as {sent}",
     )
     assert any(it.startswith("MG303") for it in found) is is_meant
+
+
+def test_what_only_may_be_sent_is_not_meant() -> None:
+    """Nav2's controller_server sends motion_target with one of its plugins only."""
+    seen = read_system(
+        "running: /robot1/dock subscribes /robot1/dock_pose geometry_msgs/msg/PoseStamped\n"
+        "running: /robot1/find publishes /robot1/dock_aim geometry_msgs/msg/PoseStamped"
+    )
+    ends = (it._replace(sure=MAY) if it.role == PUBLISHES else it for it in seen.system.ends)
+    assert "MG303" not in {
+        it.code for it in judge(seen._replace(system=seen.system._replace(ends=tuple(ends))))
+    }
 
 
 PAIR = (f"/robot1/amcl subscribes /clock {CLOCK}", f"/robot2/amcl subscribes /clock {CLOCK}")
@@ -931,3 +944,18 @@ def test_velocities_of_nav2_that_no_input_of_the_mux_reads() -> None:
     assert found.endswith("which no node reads; /robot1/twist_mux reads /robot1/cmd_vel")
     by_hand = [it for it in lines if "/robot1/cmd_vel " not in it]
     assert not [it for it in said(*by_hand) if "/robot1/twist_mux reads" in it]
+
+
+def test_two_nodes_that_feed_each_other_and_a_part_in_millimetres() -> None:
+    ends = (("a", "/x", "/y"), ("b", "/y", "/x"))
+    lines = [
+        f"/{node} {does} {topic} {SCAN}"
+        for node, read, sent in ends
+        for does, topic in (("subscribes", read), ("publishes", sent))
+    ]
+    assert [it for it in said(*lines) if " makes " in it] == [
+        "MG329 error /a: makes /y from /x, and /b makes /x from /y"
+    ]
+    far = "running: transform base_link -> lidar_link on /tf_static at 150 0 200 by /camera_tf"
+    (hint,) = (it.hint for it in judge(read_system(far)) if it.code == "MG418")
+    assert hint == "write metres in the files that /camera_tf reads"

@@ -190,7 +190,7 @@ def test_looks_are_merged_in_order_and_named_up_to_four() -> None:
         assert [it.name for it in found.controllers] == ["a", "b"]
         assert [it.name for it in found.parameters] == ["x", "y"]
         said = found.environment.caveats[0].message
-        assert said == f"made of {count} looks: {names}"
+        assert said == f"made of {count} snapshots: {names}"
 
 
 def test_the_words_of_the_records() -> None:

@@ -38,13 +38,14 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     # Once: so are the others.
     known = (it for it in parts if it.kind == PLUGIN and it.is_known)
     old = next((it for it in known if it.name.startswith(CLASSIC)), None)
-    if old and not lacks_classic(release, inventory.document.source):
-        old = None
+    old = old if old and lacks_classic(release, inventory.document.source) else None
     for plugin in root.iter(PLUGIN):
         if hint := why_not_loaded(plugin, tree.definitions):
             message = f"nothing loads the <plugin> {plugin_name(plugin)!r} here"
             yield Problem(plugin, message, None, hint, (), NOT_LOADED)
-    by_ros = _by_ros(parts, tree.definitions)
+    # Plugins that both ROS have, by the one whose definition is used.
+    both = (it for it in parts if len(tree.definitions.find(PLUGIN, library_key(it.name))) > 1)
+    by_ros = lists_by_key((it.section.ros, it) for it in both if it.section)
     for part in parts:
         if not part.is_known:
             message, hint = _message_and_hint(part, tree.definitions, guesses)
@@ -59,15 +60,6 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             )
             hint = "name the ROS 2 release with --distro, or write it for ROS 2, with <ros>"
             yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
-
-
-def _by_ros(parts: Iterable[ActivePart], definitions: Definitions) -> dict[str, list[ActivePart]]:
-    """Return plugins that both ROS 1 and ROS 2 have, by the ROS whose definition is used."""
-    return lists_by_key(
-        (it.section.ros, it)
-        for it in parts
-        if it.section and len(definitions.find(PLUGIN, library_key(it.name))) > 1
-    )
 
 
 def is_unknown(section: PluginDefinition) -> bool:

@@ -113,7 +113,9 @@ def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -
     old = joint.parts.get("origin")
     inner = pose_of(old)
     if inner is None:
-        raise InputError(f"{part.file}: the origin of {joint.name!r} is no six numbers")
+        raise InputError(
+            f"{part.file}: the origin of {joint.name!r} is not six numbers, correct it"
+        )
     outer = pose_of_six(pose)
     text = _origin(outer, pose) if inner == HERE else _origin(pose_in_parent(outer, inner))
     start = spans.start_of(joint.element if old is None else old)

@@ -141,7 +141,7 @@ def _links_with_collision(described: _Element) -> set[str]:
 
 
 def _nearest(link: str, beside: dict[str, set[str]], shaped: Collection[str]) -> Iterator[str]:
-    """Yield the links with a shape that no other such link separates from a link."""
+    """Yield the links with a shape that no other link with one separates from a link."""
     seen, todo = {link}, [link]
     for at in todo:  # grows
         for other in beside[at] - seen:

@@ -192,8 +192,8 @@ def why_not_loaded(plugin: _Element, definitions: Definitions) -> str:
     section, _ = plugin_section(plugin, definitions)
     if not section or (definitions.ros, section.ros, definitions.release) != _LEFT_OVER:
         return ""
-    is_missing = section.source.startswith(_BY_GAZEBO_ROS)
-    return "ROS 2 has no such library: write the plugin that it has for this" if is_missing else ""
+    hint = "ROS 2 has no such library: write the plugin that it has for this"
+    return hint if section.source.startswith(_BY_GAZEBO_ROS) else ""
 
 
 def plugin_name(plugin: _Element) -> str:
@@ -228,7 +228,9 @@ def opened(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str
         it = split_opens(word)
         if not it.path or (it.when and not holds(host, it.when)):
             continue
-        values = [value for value in given_at(host, it.path) if value]
+        # A camera puts its sensor's name in front of its files (gz-sensors CameraSensor.cc, SaveImage).
+        own = f"/{host.get('name', '')}" if host.tag == "sensor" and it.kind == FILE else ""
+        values = [f"{value}{own}" for value in given_at(host, it.path) if value]
         for value in values or ([it.default] if it.default else []):
             # The first device of its kind has the number 0.
             if value not in NOWHERE or (it.kind == DEVICE and value == "0"):

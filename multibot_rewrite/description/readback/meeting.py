@@ -159,7 +159,7 @@ def advice(name: RuntimeName, together: bool = False) -> str:
 def _for_code(name: RuntimeName) -> str:
     """Return the hint for a shared name that is fixed in a plugin's code."""
     if code_of(name) == LOOKUP:
-        return "use --layout both --affix prefix, or run each robot in a Gazebo of its own"
+        return "run each robot in a Gazebo of its own, or if it has a prefix use --affix prefix"
     if name.path == IN_CODE:
         return f"{_FIXED}: use --layout tf-per-robot, or {_OF_FRAME}"
     if name.tag == "ros2_control":

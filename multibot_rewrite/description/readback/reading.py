@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.releases import ROS_1
 from multibot_rewrite.description.readback import active, parameters
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
@@ -63,7 +64,9 @@ def read_tree(root: _Element, definitions: Definitions) -> Reading:
     hosts, unknown = _hosts(root, definitions)
     nodes = _ros_nodes(hosts, definitions.release)
     with_node = {it.number for it in nodes}
-    names = [*_links(root), *_node_names(nodes), *_without_rules(root, hosts, with_node)]
+    # A plugin of ROS 1 has the one node of its process.
+    without_rules = _without_rules(root, hosts, with_node) if definitions.ros != ROS_1 else ()
+    names = [*_links(root), *_node_names(nodes), *without_rules]
     names += _other_names_of_hosts(root, hosts, "plugin", with_node, definitions)
     systems = enumerate(root.iter("ros2_control"))
     known = ((it, number, active.hardware_section(it, definitions)) for number, it in systems)

@@ -116,6 +116,7 @@ def _section_name(type_: str, element: "_Element") -> str:
 
 
 def _is_header(type_: str, name: str) -> bool:
+    """Return whether ``[TYPE NAME]`` is a valid header in a file of plugin definitions."""
     try:
         return read_header("", f"{type_} {name}]") == (type_, name)
     except DefinitionsError:

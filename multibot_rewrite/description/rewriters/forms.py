@@ -226,7 +226,7 @@ def of_names(form: Form) -> Form:
     """Return the form for values as long as names are; a longer one is an undeclared name."""
 
     def bounded(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-        """Return what ``form`` does; for a value longer than names are, one undeclared name."""
+        """Return the names that ``form`` finds; one undeclared name for a value that is too long."""
         if len(value) > LONGEST:
             return tuple(it._replace(closed=True) for it in whole(value, kinds, declared))
         return form(value, kinds, declared)

@@ -102,7 +102,7 @@ def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
 
 
 def frame_sites(host: etree._Element, section: PluginDefinition, naming: Naming) -> list[SiteRow]:
-    """Return the rows for frames of a system that sends a transform with these parameters."""
+    """Return the rows for frames whose default, made of the model's name, applies to a system."""
     return [it for it in _of_model(section) if default_of(host, it.default, naming)]
 
 

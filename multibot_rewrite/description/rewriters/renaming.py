@@ -86,7 +86,7 @@ def _resolved_names(claim: Claim, declared: Declared, apart: bool) -> tuple[Reso
 def _with_kinds(
     parts: Iterable[NamePart], role: str, declared: Declared, apart: bool
 ) -> tuple[ResolvedName, ...]:
-    """Return the names, each with the one of its kinds that it is."""
+    """Return the names, each resolved to one of its kinds."""
     return tuple(
         ResolvedName(part.at, part.text, kind_of(part, role, declared, apart), part.kinds)
         for part in parts

@@ -113,7 +113,9 @@ def converse(
             why = _ended(access.path, it.end(ended=True), seconds)
             raise InputError(why, XACRO_FAILED) from None
         except _GARBAGE:
-            said = "its process gave a wrong answer; a file that tampers with it is not expanded"
+            said = (
+                "its process sent no valid answer; remove Python in ${} that changes how it works"
+            )
             raise InputError(f"{access.path}: xacro failed: {said}", XACRO_FAILED) from None
 
 

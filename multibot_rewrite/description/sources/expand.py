@@ -118,7 +118,7 @@ def expand_traced(
         trace = Trace(result, sources, path)
         text = _text(path, result, trace)
         if len(result.origins) != 3 * len(start_offsets(text)):
-            what = "the places that its process reported are wrong"
+            what = "the places that its process reported are wrong; report this with the file"
             raise model.InputError(f"{path}: xacro failed: {what}", model.XACRO_FAILED)
         return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts), Pieces(trace))
 

@@ -132,7 +132,8 @@ def _started_child(theirs: socket.socket) -> tuple[Server, int]:
             return one, one.start(theirs)
         except ServerGoneError:
             server.cache_clear()
-    raise InputError(f"xacro: no process can be started: {sys.executable} does not run {_MODULE}")
+    why = f"{sys.executable} does not run {_MODULE}; install multibot_rewrite for it"
+    raise InputError(f"xacro: no process can be started: {why}")
 
 
 @lru_cache(maxsize=1)

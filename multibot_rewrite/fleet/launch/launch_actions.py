@@ -381,7 +381,7 @@ def _managed(given: _Given, manager: str) -> Iterator[str]:
 
 
 def _own_node_name(given: _Given, node: str) -> str:
-    """Return the name of a node of a node set: the robot's parameter file may have an older one."""
+    """Return what the robot calls a node of a node set, also by an older name; else empty."""
     if node in given.names.nodes:
         return given.names.name(node)
     alike = (name for name, it in given.facts.items() if it.known == node)

@@ -83,7 +83,7 @@ def _with_switched_on(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph
 
 def _read_once(order: LaunchOrder) -> LaunchGraph:
     """Return the graph of a launch file, read once for all spellings of its path."""
-    whole = _with_full_path(order)
+    whole = order._replace(file=os.path.abspath(order.file))
     try:
         graph = once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
     except InputError as error:
@@ -107,11 +107,7 @@ def why_not(graph: LaunchGraph) -> str:
 
 def keep(order: LaunchOrder, graph: LaunchGraph) -> None:
     """Keep the graph of a launch file, which is not read again in ``kept_expansions``."""
-    once_kept(_with_full_path(order), lambda: graph)
-
-
-def _with_full_path(order: LaunchOrder) -> LaunchOrder:
-    return order._replace(file=os.path.abspath(order.file))
+    once_kept(order._replace(file=os.path.abspath(order.file)), lambda: graph)
 
 
 @lru_cache
@@ -130,8 +126,7 @@ def times_of(file: str) -> tuple[int, ...]:
 
 
 def _own_orders(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
-    pairs = ((it, filled(dict(it.arguments), robot)) for it in orders)
-    return [it._replace(arguments=tuple(given.items())) for it, given in pairs]
+    return [it._replace(arguments=(*filled(dict(it.arguments), robot).items(),)) for it in orders]
 
 
 def nodes_with(

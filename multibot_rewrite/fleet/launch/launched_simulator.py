@@ -4,6 +4,7 @@
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from itertools import pairwise
 from typing import NamedTuple
 
 from multibot_rewrite.base.model import InputError
@@ -63,14 +64,8 @@ def with_launched_world(file: FleetFile) -> FleetFile:
 
 def _options(words: Sequence[str]) -> Iterator[str]:
     """Yield the options with their values, each as one text."""
-    before = ""
-    for word in words:
-        if before in _VALUED and word[:1] != "-":
-            yield f"{before} {word}"
-        elif before in _VALUED:
-            yield before
-        if word[:1] == "-" and word not in (*_OWN, *_VALUED):
+    for word, after in pairwise((*words, "-")):
+        if word in _VALUED:
+            yield word if after.startswith("-") else f"{word} {after}"
+        elif word.startswith("-") and word not in _OWN:
             yield word
-        before = word
-    if before in _VALUED:
-        yield before

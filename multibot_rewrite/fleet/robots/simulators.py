@@ -167,7 +167,7 @@ def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
         why = _part(it, root) or ("is all that may move it" if alone and it.kind == PLUGIN else "")
         if why:
             who = f"robot {robot.spec.name!r}: {it.kind} {it.name}"
-            message = f"{who} {why}, and its code is not known: whether it drives is not shown"
+            message = f"{who} {why}, and its code is not known, nor whether it drives the robot"
             yield at_robot(UNREAD_DRIVE, robot, message, SAY_IT)
 
 

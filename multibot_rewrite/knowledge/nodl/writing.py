@@ -70,7 +70,7 @@ def document_of(
 
 
 def _fits(end: Endpoint) -> bool:
-    """Return whether NoDL can hold an endpoint's name and type; those of an action's parts, no."""
+    """Return whether NoDL can hold an endpoint's name and type, as it cannot for an action's parts."""
     group = f"/{GROUP[end.kind]}/"
     return bool(_NAME.fullmatch(end.name) and _TYPE.fullmatch(end.type) and group in end.type)
 

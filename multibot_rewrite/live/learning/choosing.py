@@ -77,7 +77,7 @@ def check_seen_name(what: str, name: str) -> None:
 
 
 def _suggestion(name: str, known: Iterable[str]) -> str:
-    """Return which of the running nodes may be meant."""
+    """Return a hint with the running nodes that may be meant."""
     nodes = sorted(node for node in known if not is_tool(node))
     near = nearest_few(name, nodes, 3) or nodes[:3]
     return f"running are {', '.join(near)}" if near else "no nodes are running, or only tools"

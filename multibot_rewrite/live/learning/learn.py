@@ -165,7 +165,7 @@ def _types_by_endpoint(ends: Iterable[End]) -> Seen:
         check_seen_name(end.kind, end.name)
         if (end.kind == TOPIC) != (end.role in (PUBLISHES, SUBSCRIBES)):
             raise UsageError(
-                f"{end.node} {end.role} the {end.kind} {end.name}, which ROS has not: look again"
+                f"{end.node} {end.role} the {end.kind} {end.name}, which is impossible; record it again"
             )
         found, valid = types[EndpointId(end.kind, end.role, end.name)], _TYPE.fullmatch(end.type)
         # Another type counts as not known.

@@ -211,7 +211,10 @@ function resize() {
   draw();
 }
 
+// Whether the picture is as fit left it: one that nobody turned is fitted to each new size.
+let untouched = true;
 function fit() {
+  untouched = true;
   draw();
   show(left.value);
   const box = new THREE.Box3();
@@ -370,6 +373,7 @@ renderer.domElement.addEventListener("keydown", (it) => {
   if (!(it.key in KEYS || it.key in NEARER || it.key === "0") || it.ctrlKey || it.metaKey || it.altKey) return;
   it.preventDefault();
   if (it.key === "0") return fit();
+  untouched = false;
   const side = from.clone().cross(camera.up).normalize();
   from.applyAxisAngle(camera.up.clone().normalize(), turn).applyAxisAngle(side, rise).multiplyScalar(NEARER[it.key] || 1);
   camera.position.copy(controls.target).add(from);
@@ -382,10 +386,13 @@ for (const it of [left, right]) it.addEventListener("change", () => { resize(); 
 for (const it of Object.values(toggles)) it.addEventListener("change", draw);
 document.getElementById("fit").addEventListener("click", fit);
 controls.addEventListener("change", draw);
-window.addEventListener("resize", resize);
+controls.addEventListener("start", () => { untouched = false; });
+// In a report the page may run before it has a size, and a camera that is placed then sees nothing.
+new ResizeObserver(() => {
+  resize();
+  if (untouched) fit();
+  document.body.dataset.ready = "yes";
+}).observe(stage);
 (function animate() { requestAnimationFrame(animate); controls.update(); })();
 data.robots.forEach(compare);
-resize();
-fit();
 describe(data.robots[0], "", "robot");
-document.body.dataset.ready = "yes";

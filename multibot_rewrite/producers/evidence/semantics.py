@@ -75,7 +75,7 @@ def _place(element: _Element, file: str) -> Place:
 
 
 def managers(node: yaml.Node | None) -> Iterator[yaml.Node]:
-    """Yield the manager's map, at the top of a file or below a node's parameters."""
+    """Yield each map below ``moveit_simple_controller_manager``, at any depth of a file."""
     for key, value in pairs(node):
         if key.value == SIMPLE:
             yield value

@@ -48,7 +48,7 @@ _KEPT_TEXT = ("pkg", "exec", "plugin", "node_name", "container")
 def read_system_model(path: str) -> LaunchGraph:
     """Return the nodes of a system model; raises InputError for one that has none."""
     document = read_yaml(read_file(path), path)
-    lines = _lines(document.root)
+    lines = _line_by_node(document.root)
     data = load_yaml(document.text, path)
     structure = data.get("structure") if isinstance(data, dict) else None
     nodes = structure.get("nodes") if isinstance(structure, dict) else None
@@ -59,7 +59,9 @@ def read_system_model(path: str) -> LaunchGraph:
     for name, it in nodes.items():
         place = Place(path, lines.get(str(name), 1))
         if not isinstance(it, dict) or not str(name).startswith("/"):
-            raise InputError(f"{place}: {name} is no node of a system model; write it anew")
+            raise InputError(
+                f"{place}: node {name} needs its full name and keys; use play_launch dump"
+            )
         if it.get("pkg"):
             found.append(_node_of(str(name), it, place))
         else:
@@ -67,8 +69,8 @@ def read_system_model(path: str) -> LaunchGraph:
     return LaunchGraph(tuple(found), tuple(notes))
 
 
-def _lines(root: yaml.Node | None) -> dict[str, int]:
-    """Return the line of each node."""
+def _line_by_node(root: yaml.Node | None) -> dict[str, int]:
+    """Return by name the line of each node in a system model."""
     for part in ("structure", "nodes"):
         root = next((value for key, value in pairs(root) if key.value == part), None)
         if root is None:
@@ -161,7 +163,9 @@ def _checked_answer(order: LaunchOrder, answer: Mapping[str, Any]) -> LaunchGrap
                 return graph
             why = f"it starts {len(graph.nodes)} processes; of a robot {MOST} are read at most"
     except (ValueError, TypeError, LookupError, AttributeError):
-        why = "its process gave a wrong answer; a file that tampers with it is not read"
+        why = (
+            "its process sent no valid answer; remove code that changes how Python reads or writes"
+        )
     try:
         why = f"{why}{started_by(read_file(order.file).decode('utf-8', 'replace'))}"
     except InputError as error:  # a link to nothing, or a folder

@@ -85,7 +85,7 @@ def with_real_paths(it: Any) -> Any:
 
 
 def real_paths(text: str) -> str:
-    """Return a text in which the paths are there when the launch is over."""
+    """Return a text with the launch's temporary paths replaced by those that are there afterwards."""
     top = _top()
     if not top or top not in text:
         return text

@@ -255,7 +255,7 @@ def _part(it: Run, inside: Sent) -> _Part:
 
 
 def _without_own_time(ends: Sequence[End]) -> Iterator[End]:
-    """Yield the ends without unsent clocks in a simulator, which has the time itself."""
+    """Yield the ends, without ``/clock`` of the simulator's process where nothing publishes it."""
     sent = any(it.role == PUBLISHES and it.name == CLOCK for it in ends if it.sure == RUNS)
     yield from (it for it in ends if sent or it.name != CLOCK or it.process != SIMULATED)
 

@@ -287,12 +287,12 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
         target = getattr(handler, "_OnActionEventBase__action_matcher", None)
         target = getattr(handler, "target_action", target)
         seen = seen._replace(delay=0.0, event=type(handler).__name__, target=target)
-    _wait(actions, word, seen, timer)
+    _visit_later(actions, word, seen, timer)
     return None
 
 
-def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -> None:
-    """Keep actions with their context's locals; for an event handler only those of this package."""
+def _visit_later(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -> None:
+    """Queue actions for a later visit; a timer's keep all locals of the context, others only ours."""
     actions, known = [*actions], seen.context.get_locals_as_dict()
     kept = {key: it for key, it in known.items() if timer or key.startswith(_OURS)}
     if actions and seen.events >= _MOST_EVENTS:
@@ -307,7 +307,7 @@ def _ended(entity: Any, seen: Visit) -> None:
     actions = getattr(entity, "_ExecuteLocal__on_exit", None)
     if not callable(actions):
         seen = seen._replace(delay=0.0, event="OnProcessExit", target=entity)
-        _wait(_flat_list(actions), "at an event (on_exit)", seen)
+        _visit_later(_flat_list(actions), "at an event (on_exit)", seen)
 
 
 def _flat_list(actions: Any) -> list[Any]:

@@ -151,7 +151,9 @@ def _qos(topic: "Topic", file: str) -> Qos | None:
     )
     for known, number in given:
         if not 0 <= number < len(known):
-            raise InputError(f"{file}: {topic.name}: no policy {number}; record the graph again")
+            raise InputError(
+                f"{file}: {topic.name}: QoS has no policy {number}; record the graph again"
+            )
     history, reliability, durability, liveliness = (known[number] for known, number in given)
     if {reliability, durability} == {UNKNOWN}:
         return None

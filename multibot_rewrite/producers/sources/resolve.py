@@ -193,7 +193,7 @@ def _is_member(made: Made, name: str) -> bool:
 
 
 def _spot_of(spot: Spot, row: Value) -> Spot:
-    """Return the function that sets a member; for a constructor with its known arguments."""
+    """Return the place of the function that sets a member; of a constructor with known arguments."""
     makes = row.function in ("__init__", row.owner)
     given = spot.made.given.get(row.owner, NO_WORDS) if makes else NO_WORDS
     return spot._replace(owner=row.owner, function=row.function, given=given, path=row.place.path)

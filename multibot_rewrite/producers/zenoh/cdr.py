@@ -62,22 +62,22 @@ def read_tf(data: bytes) -> TfMessage | None:
 
 
 def read_transform(data: bytes) -> TfMessage | None:
-    """Return the message with a single TransformStamped in these bytes, or None as above."""
+    """Return the message with a single TransformStamped in these bytes, or None if cut short."""
     return _read(data, lambda it: TfMessage((_stamped(it),)), None)
 
 
 def read_header_frame(data: bytes) -> str | None:
-    """Return the ``header.frame_id`` of a message that begins with a header, or None as above."""
+    """Return the ``header.frame_id`` of a message that begins with a header, or None if cut short."""
     return _read(data, lambda it: _texts(it, 1)[0], None)
 
 
 def read_text(data: bytes) -> str | None:
-    """Return the text of a ``std_msgs/msg/String``, or None as above."""
+    """Return the text of a ``std_msgs/msg/String``, or None if cut short."""
     return _read(data, lambda it: it.text(), None)
 
 
 def read_child_frame(data: bytes) -> str | None:
-    """Return the ``child_frame_id`` of an Odometry, which comes after its header, or None as above."""
+    """Return the ``child_frame_id`` of an Odometry, after its header, or None if cut short."""
     return _read(data, lambda it: _texts(it, 2)[1], None)
 
 
@@ -87,7 +87,7 @@ def read_pose(data: bytes, texts: int) -> Transform | None:
 
 
 def read_joint_names(data: bytes) -> tuple[str, ...]:
-    """Return the names in a JointState or JointTrajectory, after its header; empty as above."""
+    """Return the names in a JointState or JointTrajectory, after its header; empty if cut short."""
 
     def names(reader: _Reader) -> tuple[str, ...]:
         _texts(reader, 1)
@@ -114,7 +114,7 @@ def _texts(reader: "_Reader", many: int) -> list[str]:
 
 
 def read_stamp(data: bytes) -> float | None:
-    """Return the ``header.stamp`` of such a message in seconds, or None as above."""
+    """Return the ``header.stamp`` of such a message in seconds, or None if cut short."""
     mark = _ENDS.get(data[:2])
     if mark is None or len(data) < _HEADER + _STAMP:
         return None

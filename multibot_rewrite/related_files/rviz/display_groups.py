@@ -105,11 +105,11 @@ def robot_groups(job: RvizJob) -> Iterator[Splice]:
     if not shown:
         return
 
-    def shared(one: RvizItem) -> bool:
+    def is_shared(one: RvizItem) -> bool:
         return one.block.start not in job.own and not for_one_process(one)
 
     for one in shown:
-        yield from _kept_parts(one, shared, lambda leaf: entries(document, leaf, job.robots))
+        yield from _kept_parts(one, is_shared, lambda leaf: entries(document, leaf, job.robots))
     rows = [remark(document, one) for one in leaves(shown) if for_one_process(one)]
     rows += [_group_of_robot(job, at) for at in range(len(job.robots))]
     yield inserted(document, shown[-1].block.end, "".join(rows))
@@ -132,10 +132,10 @@ def _group_of_robot(job: RvizJob, at: int) -> str:
     """Return the group of one robot: copies of the displays with its names; empty if it has none."""
     document, robot = job.config.document, job.robots[at]
 
-    def own(one: RvizItem) -> bool:
+    def is_own(one: RvizItem) -> bool:
         return one.block.start in job.own and not for_one_process(one)
 
-    def made(one: RvizItem) -> Iterator[Splice]:
+    def copy_edits(one: RvizItem) -> Iterator[Splice]:
         yield from item_splices(document, one, robot, job.colours[at])
         # Each window needs its own title; a list of other displays no longer holds.
         name, visible = value(one.node, "Name"), value(one.node, "Visibility")
@@ -145,9 +145,9 @@ def _group_of_robot(job: RvizJob, at: int) -> str:
             yield Splice(visible.start_mark.index, end_of(visible), "{}")
 
     copies = [
-        cut_out(document, one.block.start, one.block.end, _kept_parts(one, own, made))
+        cut_out(document, one.block.start, one.block.end, _kept_parts(one, is_own, copy_edits))
         for one in job.config.displays
-        if any(map(own, leaves([one])))
+        if any(map(is_own, leaves([one])))
     ]
     if not copies:
         return ""

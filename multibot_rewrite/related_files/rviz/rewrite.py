@@ -100,7 +100,7 @@ def rewrite_rviz(
     colours = tuple(_robot_colour(robot, at, len(robots)) for at, robot in enumerate(robots))
     world = world or world_frame(naming)
 
-    def make(upto: int) -> tuple[RvizText, ...]:
+    def windows_for(upto: int) -> tuple[RvizText, ...]:
         some = robots[:upto] if not together or has_own_windows(config, robots[0]) else ()
         each = map(lambda *it: _window_for_one(config, *it), some, colours)
         return (
@@ -108,9 +108,9 @@ def rewrite_rviz(
             *each,
         )
 
-    made = make(len(robots))
+    made = windows_for(len(robots))
     # All others differ from these in names only.
-    for text in made if len(robots) <= PROVED else make(PROVED):
+    for text in made if len(robots) <= PROVED else windows_for(PROVED):
         try:
             compose_yaml(text.text, document.file)
         except InputError as error:

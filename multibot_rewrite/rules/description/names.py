@@ -162,7 +162,7 @@ _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
 
 @rule("MB301", "leading-slash", WARNING, formats=(URDF, SRDF, *EVERY))
 def leading_slash(subject: Subject) -> Iterator[Problem]:
-    """Report a leading slash, with a fix if the rest is a link. Plugins know /world."""
+    """Report frames with a leading slash, with a fix if the rest is a link; /world may have it."""
     shared = subject.settings.naming.shared_frames
     for claim in subject.inventory.claims:
         if claim.value[:1] != "/" or claim.site.form != "whole":

@@ -97,7 +97,7 @@ def second_model(file: NamedFile) -> Iterator[Finding]:
 
 @robots_rule("MB890", "bridge-not-per-robot", WARNING, BRIDGE)
 def shared_service(file: NamedFile) -> Iterator[Finding]:
-    """Report services that are not those of the world."""
+    """Report services that one row bridges for all robots, unless they are the world's."""
     for node in _bridge_rows(file):
         service = text_in(row_of(node), SERVICE)
         if service and not service.strip("/").startswith("world/") and not any(faults(node)):
@@ -161,7 +161,7 @@ def _topic_faults(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> I
 
 
 def _write(word: str, topic: GzTopic) -> str:
-    """Return the hint to write a word of the description's own topic."""
+    """Return the hint to write a value of the description's topic, with the topic's place."""
     return f"write {word}" + (f", see {topic.place}" if topic.place != NOWHERE else "")
 
 

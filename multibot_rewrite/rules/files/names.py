@@ -52,13 +52,13 @@ WORLD = "world"
 
 @rule("MB853", "undeclared-frame-in-file", WARNING, formats=EVERY)
 def undeclared_frame(file: NamedFile) -> Iterator[Finding]:
-    """Report frames and links."""
+    """Report frames and links that the description does not declare."""
     return _undeclared_names(file, _FRAMES)
 
 
 @rule("MB854", "undeclared-joint-in-file", NOTE, formats=EVERY)
 def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
-    """Report joints, sensors and groups."""
+    """Report joints, sensors, groups and interfaces that the description does not declare."""
     return _undeclared_names(file, _PARTS)
 
 

@@ -169,7 +169,7 @@ def _in_sources(package: str, file: str, roots: tuple[str, ...]) -> tuple[Declar
 
 
 def of_release(facts: Sequence[Declared], release: str) -> list[Declared]:
-    """Return those that the release has."""
+    """Return the declared parameters that the release has."""
     return [it for it in facts if has_release(it.releases, release)]
 
 

@@ -222,7 +222,7 @@ def filled(text: str, path: str, name: str) -> tuple[str, ...]:
 
 
 def _wild_declarations(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Declared]:
-    """Return those that have the name, each with the last word of its path."""
+    """Yield the declarations whose path with a placeholder matches the name."""
     last = name.rpartition(".")[2]
     return (it for end, it in wild if (end == last or "<" in end) and it.has_name(name))
 

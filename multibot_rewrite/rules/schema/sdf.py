@@ -104,7 +104,7 @@ def _converter_faults(child: _Element, row: SdfRow, home: str) -> Iterator[Probl
     belongs = _parents_of(row.name)
     if home not in belongs:
         message = f"<{row.name}> in the <gazebo> of a {home} has no effect"
-        hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
+        hint = f"name a {' or '.join(belongs)} with reference=, where it is read"
         yield fault("misplaced", child, None, message, hint)
     elif wrong := misread(row.type, text):
         level = ERROR if row.type == "double" and wrong.fails else WARNING

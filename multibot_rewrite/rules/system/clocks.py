@@ -130,7 +130,7 @@ def clocks_mixed(seen: Index) -> Iterator[Finding]:
 
 
 def mixed_clocks(seen: Index) -> Iterator[Finding]:
-    """Yield the findings of MG503."""
+    """Report robots some of whose nodes are on simulated time and some on the machine's."""
     yield from _not_as_planned(seen)
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
     if not simulated or not _clock_senders(seen):
@@ -202,7 +202,7 @@ _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry")
 
 @system_rule("MG417", "stamp-of-another-time", ERROR)
 def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
-    """Report all topics of a sender that are wrong in one way as one; a bag's data are of then."""
+    """Report senders with stamps of another time, all their topics as one; a bag's may be old."""
     clock = CLOCK in seen.published
     simulated = clock and any(_YEAR < abs(it.age) < inf for it in seen.system.heard)
     found: dict[tuple[tuple[str, ...], str], list[str]] = defaultdict(list)

@@ -47,7 +47,7 @@ _Values = Mapping[tuple[str, ...], Mapping[str, _Value]]
 
 @system_rule("MG328", "differs-from-its-likes", WARNING)
 def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
-    """Report what one robot has otherwise than those built alike, once a node; so its transforms."""
+    """Report what differs in one robot from robots built like it, once for each node and its tf."""
     for likes in alike(nodes_of_each(seen)):
         for values in (_parameter_values(seen), _type_values(seen), _qos_values(seen)):
             yield from _differences(_odd_values(values, likes), len(likes) == _TWO)

@@ -206,7 +206,7 @@ ENOUGH = 10
 
 @system_rule("MG326", "less-than-another-robot", WARNING)
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
-    """Report robots with fewer messages than the one with the most on such a topic."""
+    """Report robots with fewer messages on a topic than another robot has on its own one."""
     yield from _silent_or_slow(seen)
     yield from _slow_transforms(seen)
     # Name without the robot's -> robot -> name, of the topics whose messages were counted.

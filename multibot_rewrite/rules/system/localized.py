@@ -201,7 +201,7 @@ def part_far_away(seen: Index) -> Iterator[Finding]:
             if it.static and _FAR < away < inf and _is_of_a_body(seen, it.parent, above):
                 yield part_far_away.finding(
                     f"{it.parent} -> {it.child} on {it.topic} is {away:g} m long",
-                    f"write metres where {shorten(it.publishers) or 'its node'} gets it",
+                    f"write metres in the files that {shorten(it.publishers) or 'its node'} reads",
                     robot=seen.frame_robot(it.child) or only(robots_of(seen, it.publishers)),
                     names=(it.child, it.topic),
                 )

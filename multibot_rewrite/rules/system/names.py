@@ -58,7 +58,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             offered = unheard if chooses(end.node) else published
             if near := published.get(_published_instead(seen, end, offered, unheard)):
                 yield _missed_topic(seen, end, near, ERROR)
-            elif other := None if lost else sent_instead(seen, end):
+            elif not lost and (other := sent_instead(seen, end)) and other.name in published:
                 by_kind.setdefault(other.name, []).append(end)
             elif mine := _robots_topics(seen, end):
                 yield _outside_reader(seen, end, mine)
@@ -110,10 +110,10 @@ def _published_instead(
     above = (it for it in _possible_names(end.node, end.name) if it in published)
     fitting = (it for it in above if published[it].type == end.type)
 
-    def mine(it: str) -> bool:
+    def has_own_sender(it: str) -> bool:
         return not own.isdisjoint(map(seen.robot, nodes_of(published[it].publishers)))
 
-    if captured := next(filter(mine, fitting), ""):
+    if captured := next(filter(has_own_sender, fitting), ""):
         return captured
     if not owner and robot:
         # Its own robot has it: whether or not others read it as well.
@@ -125,7 +125,7 @@ def _published_instead(
     def is_of_another(it: str) -> bool:
         if it not in published or nodes_of(published[it].publishers) == (end.node,):
             return False
-        return not _is_of_other_robot(seen, end.name, it) and (not owner or mine(it))
+        return not _is_of_other_robot(seen, end.name, it) and (not owner or has_own_sender(it))
 
     bare = seen.plain(end.name)
     hidden = [_without_own_name(end), *_hidden_names(seen, end.name)]

@@ -64,7 +64,7 @@ def _is_same(planned: str, value: str) -> bool:
 
 
 def _is_serious(plan: Index, it: Parameter) -> bool:
-    """Return whether the plan itself sets it, or it is a frame of a robot."""
+    """Return whether a parameter has no file that sets it, or is a frame of its robot."""
     frames = plan.frames_of.get(plan.robot_of.get(it.node, ""), frozenset())
     named = [*frames, *(f"/{frame}" for frame in frames)]
     return not it.place.file or parameter_value(it.value) in named

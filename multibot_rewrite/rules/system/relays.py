@@ -116,8 +116,8 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
         # Of the two it is the one that sends where others send as well.
         if other and (len(sent_.publishers), given) > (len(back.publishers), source):
             yield data_in_a_circle.finding(
-                f"sends {given} of what {other} makes of {given}",
-                "one of the two has to send on another topic",
+                f"makes {given} from {source}, and {other} makes {source} from {given}",
+                "let one of the two publish on another topic",
                 robot=seen.robot(node), node=node, names=(given,),
             )  # fmt: skip
 

@@ -132,11 +132,11 @@ def _near_frames(seen: Index, frames: Collection[str]) -> Callable[[str, str], s
         left[robot] -= len(known)
         return _near_frame(frame, known) if left[robot] > 0 else ""
 
-    def near(frame: str, but: str) -> str:
+    def near_frame(frame: str, but: str) -> str:
         found = nearest_of(frame)
         return nearest_of(frame, but) if found == but else found
 
-    return near
+    return near_frame
 
 
 def _near_frame(name: str, others: Collection[str]) -> str:

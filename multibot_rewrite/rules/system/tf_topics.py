@@ -123,7 +123,7 @@ def _is_of_nobody(seen: Index, tree: Tree, edge: Edge) -> bool:
 
 
 def _is_relayed(seen: Index, tree: Tree, robot: str) -> bool:
-    """Return whether a planned node of the robot is there, or a sender there reads its tree."""
+    """Return whether its nodes are planned to send on a topic, or a relay copies its tf there."""
     plan, topics = seen.expected, (tree.topic, static_topic(tree.topic))
     own = plan.own.get(robot, ()) if plan else ()
     planned = plan.by_key if plan else ()
@@ -203,7 +203,7 @@ def _is_own_topic(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], 
 
 
 def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
-    """Return whether the plan has the node there, away from the tf of its robot."""
+    """Return whether a node is planned with this tf topic, which is not its robot's."""
     keys = ((node, TOPIC, role, it) for it in (topic, static_topic(topic)))
     known = seen.expected.by_key if seen.expected else ()
     return topic != seen.home.get(seen.robot(node)) and any(it in known for it in keys)
@@ -222,7 +222,7 @@ def _tf_topic_of(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -
 
 @once
 def _named_on_shared(seen: Index) -> Mapping[str, Set[str]]:
-    """Return by each tf topic on which several robots send those that its frames have the names of."""
+    """Return, by tf topic of several robots, the robots whose names its frames have."""
     shared = (it for it in seen.trees if len({*map(seen.robot, it.senders)} - {""}) > 1)
     return {it.topic: {seen.frame_robot(edge.child) for edge in it.edges} for it in shared}
 

@@ -220,7 +220,7 @@ def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
 def _take_away(
     left: dict[str, set[str]], below: Mapping[str, Iterable[str]], gone: list[str]
 ) -> None:
-    """Remove frames and those that only lead to them: each way that is ``left`` has no end."""
+    """Remove ``gone`` frames from ``left``, and the frames from which there is no other way."""
     out = {*gone}
     for parent in gone:  # grows
         del left[parent]
@@ -253,7 +253,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG408", "transform-of-two-senders", ERROR)
 def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
-    """Report all such transforms of a tree as one, unless robots' frames collide."""
+    """Report transforms that several nodes send, one finding a robot, unless frames collide."""
     for tree in seen.trees:
         if collide(seen, tree):
             continue

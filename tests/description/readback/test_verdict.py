@@ -138,6 +138,28 @@ def test_ros_2_loads_no_plugin_that_gazebo_ros_pkgs_had_for_ros_1(
     assert ("MB112" in {it.code for it in made.findings}) == bool(distro)
 
 
+@pytest.mark.parametrize(
+    ("layout", "shared"), [("postfix", ()), ("tf-per-robot", ("1 resource shared by all robots",))]
+)
+def test_images_of_a_camera_begin_with_its_name(layout: str, shared: tuple[str, ...]) -> None:
+    """gz-sensors CameraSensor.cc: saveImagePrefix is the sensor's name."""
+    text = LIDAR.format("x").replace("gpu_lidar", "camera").replace("<topic>x</topic>", "{}")
+    text = text.format("<camera><save enabled='true'><path>/tmp/a</path></save></camera>")
+    assert rewrite(text, "robot1", layout=layout).not_verified == shared
+
+
+def test_ros_1_gives_no_plugin_a_node_of_its_own() -> None:
+    """uuv_simulator has them for ROS 1, Plankton for ROS 2, which reads the <ros> that is inserted."""
+    text = DRIVE.replace("gazebo_ros_diff_drive", "gazebo_ros_control").format("x")
+    text = text.replace("<ros><namespace>x</namespace></ros>", "")
+    uuv = '<gazebo><plugin name="{0}" filename="libuuv_{0}_plugin.so">{1}</plugin></gazebo></robot>'
+    space = "<robot_namespace>a</robot_namespace><link_name>a</link_name>"
+    for plugin in (("gazebo_ros_gps", space), ("underwater_object_ros", "")):
+        text = text.replace("</robot>", uuv.format(*plugin))
+    found = rewrite(text, "robot1", layout="tf-per-robot").findings
+    assert "MG301" not in {it.code for it in found}
+
+
 def test_a_sensor_below_its_own_model_is_no_other_robots() -> None:
     """kobuki's plugin looks for the bumper in the world, and for world::model::base_footprint::imu
     (kobuki_gazebo_plugins gazebo_ros_kobuki_loads.cpp)."""

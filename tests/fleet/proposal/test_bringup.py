@@ -568,6 +568,8 @@ def test_a_launch_file_is_for_one_description(package: Path, capsys: Any) -> Non
     words = ["--launch", str(package / "launch/up.launch.py")]
     assert main(["init", *both, "--yes", "-o", "-", *words]) == 2
     assert "--launch is for one description" in capsys.readouterr().err
+    assert main(["init", both[0], "--yes", "-o", "-", "--launch", "no.launch.py"]) == 2
+    assert "no.launch.py: there is no such launch file; correct" in capsys.readouterr().err
 
 
 MODEL = """<sdf version="1.9"><model name="{0}"><link name="{0}_base"/><link name="{0}_wheel"/>

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -151,6 +152,30 @@ def test_what_tf_has_is_over_the_robots(chromium: webdriver.Chrome, tmp_path: Pa
     chromium.find_element(By.ID, "tf").click()
     assert chromium.execute_script(seen) == 0
     assert [it for it in chromium.get_log("browser") if it["level"] == "SEVERE"] == []
+
+
+def test_a_page_is_fitted_to_its_size_until_it_is_turned(
+    chromium: webdriver.Chrome, tmp_path: Path
+) -> None:
+    """As in a report, which may give its frame a size after the frame's page has run."""
+    assert main(["view", str(ROBOTS / "rover.urdf"), "-o", str(tmp_path / "view.html"), "-q"]) == 0
+    outer = tmp_path / "outer.html"
+    outer.write_text('<iframe src="view.html" style="display: none"></iframe>')
+    chromium.get(outer.as_uri())
+    place = """
+const drawn = renderer.domElement.clientWidth === stage.clientWidth;
+return innerWidth === arguments[0] && drawn && camera.position.distanceTo(controls.target)"""
+    seen = []
+    for width, key in (900, ""), (200, Keys.ARROW_LEFT), (900, ""):
+        chromium.switch_to.default_content()
+        style = f"document.querySelector('iframe').style = 'width: {width}px; height: 500px'"
+        chromium.execute_script(style)
+        chromium.switch_to.frame(chromium.find_element(By.TAG_NAME, "iframe"))
+        now = partial(chromium.execute_script, place, width)
+        seen.append(WebDriverWait(chromium, 30).until(lambda _, now=now: now()))
+        assert chromium.execute_script(COLOURS) > 20
+        chromium.find_element(By.CSS_SELECTOR, "#stage canvas").send_keys(key)
+    assert seen[1:] == pytest.approx([seen[1]] * 2) and seen[0] != pytest.approx(seen[1])
 
 
 def test_the_robots_head_a_report(chromium: webdriver.Chrome, tmp_path: Path) -> None:

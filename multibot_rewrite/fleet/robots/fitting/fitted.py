@@ -117,9 +117,7 @@ def sends_too(
     sent: Sequence[Edge],
     any_parent: bool = False,
 ) -> bool:
-    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``.
-
-    With ``any_parent`` it may place that below another frame."""
+    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``."""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
     sure = (it for it in nodes if not it.when)
     own = {_placed_body(it, bodies, any_parent) for it in _edges_in_files(sure, free)}

@@ -228,6 +228,7 @@ def _equal(it: Any, context: LaunchContext) -> bool:
 
 
 def _truths(it: Any, context: LaunchContext) -> list[bool]:
+    """Return whether the left and the right side of a substitution are true."""
     return [_performed_truth(context, side) for side in (it.left, it.right)]
 
 

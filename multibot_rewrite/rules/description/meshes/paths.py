@@ -67,7 +67,7 @@ def _with_scheme(subject: Subject, *schemes: str) -> list[Used]:
 
 @rule("MB704", "path-of-one-machine", WARNING)
 def path_of_one_machine(subject: Subject) -> Iterator[Problem]:
-    """Yield a problem for the first absolute path that the source writes out, with their number."""
+    """Yield a problem for the first absolute path that is written out, with the number of all."""
     found = [it for it in _with_scheme(subject, "file") if "$" not in it.name]
     starts = starts_of(subject, [it.element for it in found])
     found = [

@@ -38,7 +38,7 @@ UNDRIVEN = ("fixed", "floating", "planar", "")
 
 @rule("MB223", "transmission-without-joint", WARNING)
 def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
-    """Report transmissions of the robot; those of the PR2 name joints by other tags."""
+    """Report transmissions without a joint; those of the PR2 name joints by other tags."""
     with_joint = subject.elements.first("joint")
     for it in subject.elements.tops("transmission"):
         if it in with_joint:
@@ -120,7 +120,7 @@ def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
 
 @rule("MB231", "repeated-interface", ERROR)
 def repeated_interface(subject: Subject) -> Iterator[Problem]:
-    """Report interfaces of one component."""
+    """Report an interface that a component declares twice."""
     for owner in subject.elements.owners():
         seen: set[tuple[str, str]] = set()
         for it in owner.iterchildren(COMMAND, STATE):
@@ -164,7 +164,7 @@ def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB239", "commanded-joint-without-state", NOTE)
 def commanded_joint_without_state(subject: Subject) -> Iterator[Problem]:
-    """Report the first such joint of a robot; another system may have the state."""
+    """Report the first joint with commands and no state; another system may have the state."""
     systems = [
         it for it in subject.elements.tops("ros2_control") if it.find("hardware") is not None
     ]
