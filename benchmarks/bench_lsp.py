@@ -65,7 +65,7 @@ def timed(job: Callable[[], object]) -> float:
 
 
 def made(folder: Path) -> list[Path]:
-    """Return files of about SIZE bytes."""
+    """Return files of about SIZE bytes, apart: descriptions beside parameters are read with them."""
     one = len(robot(100)) / 100
     urdf = robot(int(SIZE / one)).decode()
     legs = "".join(f'<xacro:leg name="leg{at}"/>\n' for at in range(SIZE // 300))
@@ -84,8 +84,9 @@ def made(folder: Path) -> list[Path]:
         "made.yaml": nodes,
     }
     for name, text in texts.items():
-        (folder / name).write_text(text)
-    return [folder / it for it in texts]
+        (folder / name).mkdir()
+        (folder / name / name).write_text(text)
+    return [folder / it / it for it in texts]
 
 
 if __name__ == "__main__":

@@ -38,7 +38,7 @@ from multibot_rewrite.refactor.rename import Place, find_places, rename_symbol
 from multibot_rewrite.rules.settings import Settings
 
 _LINTED = (*DESCRIPTIONS, SRDF, WORLD, *(kind for kind, _ in BESIDE))
-# Each with its file, the first line, the one after the last, from 0, and the text instead of them.
+# Each: file, first line, the one after the last, from 0, and new text, with the line ends of a buffer.
 Edits = list[tuple[str, int, int, str]]
 _ENDS = (".urdf", ".xacro", ".srdf", ".sdf")
 
@@ -95,7 +95,7 @@ def fixed(options: argparse.Namespace, path: str) -> Edits:
 def _edits(path: str, before: bytes, after: bytes) -> Edits:
     old, new = before.splitlines(keepends=True), after.splitlines(keepends=True)
     return [
-        (path, start, end, b"".join(new[first:last]).decode())
+        (path, start, end, b"".join(new[first:last]).decode().replace("\r\n", "\n"))
         for tag, start, end, first, last in SequenceMatcher(None, old, new).get_opcodes()
         if tag != "equal"
     ]

@@ -348,7 +348,8 @@ def test_rename_is_that_of_the_command(editor: Editor, tmp_path: Path) -> None:
     assert multibot(["rename", "spin", "turn", str(other), "--kind", "joint", "--quiet"]) == 0
     made = editor.rename(package / "r.srdf", SRDF, 'joint name="|spin', "turn")
     assert made == {name: (other / name).read_text() for name in ("r.urdf", "r.srdf")}
-    # As it is in the editor, and not yet on the disk.
+    # As it is in the editor, and not yet on the disk; a file's own line ends are the editor's affair.
+    (package / "r.srdf").write_bytes(SRDF.replace("\n", "\r\n").encode())
     text = URDF.replace('link name="wheel"', 'link name="wheel"  ')
     editor.open(package / "r.urdf", text)
     made = editor.rename(package / "r.urdf", text, 'child link="|wheel', "tyre")
