@@ -264,7 +264,7 @@ def check_use(options: argparse.Namespace) -> None:
 
 @contextmanager
 def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
-    """Yield the cache for a lint, or None, and save it at the end if its folder can be written."""
+    """Yield the cache, saved at the end; None with --trust or if it cannot be set up."""
     # What trusted files look at is not known.
     if options.trust:
         yield None

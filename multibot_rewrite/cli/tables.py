@@ -113,7 +113,7 @@ def _row_lines(row: Sequence[str], grid: Grid, widths: Sequence[int]) -> Iterato
 
 
 def json_bytes(value: object) -> bytes:
-    """Return ``value`` as JSON; a path that is not UTF-8 keeps its bytes as escapes."""
+    """Return ``value`` as JSON; a byte of a path that is not UTF-8 becomes a JSON escape."""
     import json
 
     text = in_json(json.dumps(value, indent=1, ensure_ascii=False))

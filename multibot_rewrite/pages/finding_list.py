@@ -20,7 +20,7 @@ class Sources(NamedTuple):
 
 
 def filters(scene: Scene) -> Iterator[str]:
-    """Yield the filters of findings and drawings, which the script shows because they need it."""
+    """Yield the HTML of the inputs that filter findings; hidden until the page's script runs."""
     levels = [level for level in LEVELS if any(it.level == level for it in scene.findings)]
     robots = [(str(at), name) for at, name in enumerate(scene.robots)]
     yield '<p id="filters" hidden>'

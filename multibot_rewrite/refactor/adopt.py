@@ -130,7 +130,7 @@ def adopt(
 
 
 def _adopted(job: _Job) -> Adopted:
-    """Return the package with the arguments made whole, and a new one where there is none."""
+    """Return the package with partial arguments completed, and a new argument where it has none."""
     descriptions = job.package.descriptions
     arguments = {it.path: _arguments(it, job) for it in descriptions}
     partial = {path: name for path, its in arguments.items() if (name := _incomplete_argument(its))}

@@ -93,7 +93,9 @@ class Sources:
         taken = self.arguments.keys() | set(hiding)
         free = next((name for name in names if name not in taken), None)
         if free is None:
-            raise UsageError(f"{', '.join(names)} are all in use in it: rename one of them")
+            raise UsageError(
+                f"{', '.join(names)} are all taken by its xacro arguments or properties: rename one"
+            )
         return free
 
     def macro_at(self, spot: Spot) -> str:

@@ -80,7 +80,7 @@ def test_no_controller_sent_joint_states_before_a_rewrite_either(
     )
     main(["plan", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "plan.yaml")])
     said = capsys.readouterr().err
-    assert "which no node publishes any more" not in said and "MG316" in said
+    assert "which no node publishes after the rewrite" not in said and "MG316" in said
 
 
 MODEL = """\

@@ -49,7 +49,7 @@ REFUSED = {
     ),
     "every name of the argument in use": (
         {"r.urdf.xacro": robot(TAKEN)},
-        ("are all in use in it: rename one of them",),
+        ("are all taken by its xacro arguments or properties: rename one",),
     ),
     "a file of macros": (
         {"r.xacro": robot("").replace('<link name="base"/>', '<xacro:macro name="m"/>')},

@@ -137,6 +137,7 @@ def _check_world(read: FleetData, naming: Naming) -> None:
 
 
 def _node_names(data: Mapping[str, Any], key: str) -> tuple[str, ...]:
+    """Return the node names below a key, also a single one, without slashes at their ends."""
     return tuple(it.strip("/") for it in listed(data.get(key, [])))
 
 

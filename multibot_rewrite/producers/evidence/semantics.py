@@ -50,7 +50,7 @@ class Semantics(NamedTuple):
 
 
 def semantics(srdf: _Element, urdf: _Element, file: str) -> Semantics:
-    """Return what an SRDF declares for the robot of a URDF; ``file`` is the SRDF's."""
+    """Return an SRDF's virtual joints and groups, with the joints of the URDF that each moves."""
     virtual = []
     for it in srdf.iterchildren("virtual_joint"):
         parent, child = text_of(it, "parent_frame"), text_of(it, "child_link")

@@ -326,7 +326,7 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
 
 
 def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[str, ...]:
-    """Return a program's own arguments; a spawner's one by one with one dash (gflags)."""
+    """Return the words of a program; a spawner's ``--flag=value`` (gflags) as ``-flag``, ``value``."""
     kept: list[str] = []
     for word in words:
         flag = _FLAG.fullmatch(word) if f"{package}/{executable}" in programs().spawners else None

@@ -198,7 +198,7 @@ def no_value(file: NamedFile) -> Iterator[Finding]:
 
 @rule("MB877", "listed-name-without-parameters", WARNING, formats=(PARAMS,))
 def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
-    """Report each list of a node with names that have no parameters."""
+    """Report names in lists of a node without parameters, but like one there that no list has."""
     for node in given_in(file):
         # Below each parameter the names with parameters of their own, each at its first place.
         bodies: dict[str, dict[str, Place]] = {}

@@ -113,9 +113,14 @@ def is_for_driver(seen: Index, it: Finding) -> bool:
 def no_longer_sent(end: End) -> Finding:
     """Return the finding about one end that nothing sends any more."""
     does, gives = ("subscribes to", "publishes") if end.kind == TOPIC else ("calls", "serves")
-    message = f"{does} {end.name}, which no node {gives} any more"
+    message = f"{does} {end.name}, which no node {gives} after the rewrite"
     return nothing_known_sends.finding(
-        message, level=ERROR, node=end.node, names=(end.name,), **last_place([end])
+        message,
+        "remap one of the two ends to the name of the other",
+        level=ERROR,
+        node=end.node,
+        names=(end.name,),
+        **last_place([end]),
     )
 
 

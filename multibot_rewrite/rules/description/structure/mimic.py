@@ -216,7 +216,7 @@ def controlled_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
 
 @rule("MB538", "command-beyond-limits", WARNING)
 def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
-    """Report positions beyond lower and upper, velocities and efforts beyond theirs."""
+    """Report a min or max of a command interface outside of the joint's limit, or min above max."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterchildren("joint"):
             joint = subject.robot.joint.get(it.get("name", ""))
