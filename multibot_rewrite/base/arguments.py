@@ -163,10 +163,13 @@ def _source(what: str, value: object) -> object:
     elif hasattr(root, "iterfind"):  # of lxml and of Python, each with a function of this name
         value = sys.modules[type(root).__module__].tostring(root)
     # Empty text is no path; empty bytes are an empty file.
-    return _SOURCE(what, None if value == "" else value)
+    if value == "":
+        raise UsageError(f"{what} is empty; {_WRITE_SOURCE}")
+    return _SOURCE(what, value)
 
 
-_SOURCE = _path_or(bytes, "write a path, XML text or bytes")
+_WRITE_SOURCE = "write a path, XML text or bytes"
+_SOURCE = _path_or(bytes, _WRITE_SOURCE)
 READERS: Mapping[str, Reader] = {
     "str | os.PathLike[str] | Mapping[str, Any]": _path_or(Mapping, "write a path, or a dict"),
     "str": _text,

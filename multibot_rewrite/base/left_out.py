@@ -7,6 +7,7 @@ import os
 from collections import defaultdict
 from collections.abc import Iterable
 from functools import cache
+from glob import escape, iglob
 
 # What colcon, npm and Python make; colcon writes the first marker into its own three.
 MADE = frozenset(("build", "install", "log", "node_modules", "__pycache__"))
@@ -25,6 +26,12 @@ def is_left_out(folder: str) -> bool:
     return os.path.basename(folder) in MADE or any(
         os.path.exists(os.path.join(folder, marker)) for marker in MARKERS
     )
+
+
+def marked_folders(above: str) -> list[str]:
+    """Return the folders in ``above`` that colcon or ament are told to ignore."""
+    found = (it for marker in MARKERS for it in iglob(os.path.join(escape(above), "*", marker)))
+    return sorted({os.path.dirname(it) for it in found})
 
 
 def source_folders(above: str, names: Iterable[str]) -> list[str]:

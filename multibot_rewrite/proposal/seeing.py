@@ -7,7 +7,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
+from multibot_rewrite.base.left_out import marked_folders
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_by import robot_instead
@@ -169,7 +171,10 @@ def _likeliest(
         others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
         _refuse_robots(_by_launches(looked, found), _other_one(rest[0], found) if rest else others)
         where = ", ".join(found.folders or map(os.path.normpath, wanted.paths))
-        raise UsageError(f"{where}: no description of a robot is there; give a URDF, xacro or SDF")
+        hint = "give a URDF, xacro or SDF"
+        if ignored := [it for folder in found.folders for it in marked_folders(folder)]:
+            hint = f"marked to be ignored: {shorten(ignored)}; name that folder"
+        raise UsageError(f"{where}: no description of a robot is there; {hint}")
     best = chosen(usable, found)
     likeliest = best.order[0]
     _refuse_robots(_as_likely(likeliest, looked, found), _other_one(likeliest.robot.path, found))

@@ -14,6 +14,7 @@ from multibot_rewrite.cli.multibot import main
 XACRO = '<robot {}xmlns:xacro="http://www.ros.org/wiki/xacro">{}</robot>'
 FILES = {
     "no robot": {"README.md": "", "config/nav2.yaml": "amcl: {ros__parameters: {a: 1}}\n"},
+    "ignored": {"src/AMENT_IGNORE": "", "src/car.urdf": "<robot name='car'/>"},
     "a thing": {"tree.sdf": '<sdf version="1.9"><model name="t"><link name="t"/></model></sdf>'},
     "macros": {"arm.xacro": XACRO.format('name="arm" ', '<xacro:macro name="arm"/>')},
     "broken": {"car.urdf.xacro": XACRO.format('name="car" ', "<link name='${1 +}'/>")},
@@ -27,6 +28,7 @@ FILES = {
 }
 SAYS = {
     "no robot": "no description of a robot is there; give a URDF, xacro or SDF",
+    "ignored": "/src; name that folder",
     "a thing": "nothing in it moves or senses; give the file that has the robot",
     "macros": "it has no link; it defines macros; give the file that has the robot",
     "broken": "car.urdf.xacro",
