@@ -120,7 +120,8 @@ def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Jo
         found = _with_related_files(parts, made, tree, trust)
     except UsageError as error:
         raise InputError(f"{place}: {error}") from None
-    return found._replace(data=plain_text(made, place))
+    notes = (*_relative_files(made.parts), *found.notes)
+    return found._replace(data=plain_text(made, place), notes=notes)
 
 
 def _with_related_files(

@@ -293,12 +293,15 @@ def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
     once = [it for it in latched if it not in again]
     volatile = _with_durability(ends.subscribers, DURABILITY[0])
     seeing = [it for it in volatile if is_viewer(it.node) and not words.is_hidden(it.node)]
-    seeing = seeing if ends.type != TF else []
-    readers = nodes_of(at_work(volatile) or seeing)
-    if once and readers and len(once) == len(ends.publishers):
+    own = (at_work(volatile), WARNING), (seeing if ends.type != TF else [], NOTE)
+    for found, level in own if once and len(once) == len(ends.publishers) else ():
+        if not found:
+            continue
+        readers = nodes_of(found)
+        verb = "reads" if len(readers) == 1 else "read"
         yield not_latched.finding(
-            f"{shorten(readers)} reads {ends.name} with durability VOLATILE, and {once[0]} sends it"
-            " once: started later, it never gets it", level=NOTE if volatile == seeing else WARNING,
+            f"{shorten(readers)} {verb} {ends.name} with durability VOLATILE, and {once[0]} sends it"
+            " once: who starts later never gets it", level=level,
             robot=seen.robot(ends.name) or seen.robot(readers[0]),
             node=readers[0], names=(ends.name,), **_ask_latched(readers, ends.name)._asdict(),
         )  # fmt: skip
