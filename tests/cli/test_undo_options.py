@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
 
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite.cli.undo_options import more_to_undo
 from multibot_rewrite.cli.urdf_postfix import main
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
@@ -66,3 +68,10 @@ def test_who_leaves_the_name_in_all_links_is_warned(
             "in all links still; was the file made with --affix prefix --layout frames-per-robot?"
         )
         assert (told in capsys.readouterr().err) is is_warned
+
+
+def test_of_options_that_take_back_as_much_the_fewest_are_named() -> None:
+    none = argparse.Namespace(affix=None, separator=[], layout=None)
+    made = b'<link name="robot1_arm"/>'
+    undo = {"prefix": b'<link name="arm"/>', None: made}
+    assert more_to_undo(made, none, lambda it: undo[it.affix], "robot1") == "--affix prefix"
