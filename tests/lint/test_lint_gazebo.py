@@ -574,8 +574,8 @@ def check_said(inside: str, said: str, distro: str = "jazzy") -> None:
         ),
         (
             sensor("imu", "<frame_id>a</frame_id>"),
-            "MB157 note <frame_id>: <frame_id> in <sensor> is of SDF 1.12; Gazebo of this release"
-            " reads up to SDF 1.11",
+            "MB157 note <frame_id>: <frame_id> in <sensor> is of SDF 1.12; leave it out: "
+            "Gazebo of this release reads up to SDF 1.11",
         ),
     ],
 )

@@ -27,7 +27,7 @@ from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import IN_FRONT
 from multibot_rewrite.description.rewriters.model_namespaces import INCLUDE, MODEL, namespace_of
 from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
-from multibot_rewrite.description.rewriters.remap_rules import relative
+from multibot_rewrite.description.rewriters.remap_rules import named, relative
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, library_key
 from multibot_rewrite.description.steps.collect import SRDF, Host, Inventory
@@ -156,13 +156,13 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
             hint = "with several robots in one Gazebo use --topics namespace"
             yield _at_host(host, "MB426", message, hint)
         return
-    inside = {host.element: section for section, host in wide}
+    inside = {host.element: (named(host.element, section)[1], section) for section, host in wide}
     for claim in inventory.claims if inside else ():
         rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
         plugin_element = next((it for it in claim.element.iterancestors() if it in inside), None)
         if rule is None or plugin_element is None:
             continue
-        if relative(rule, plugin_element, inside[plugin_element], naming):
+        if relative(rule, *inside[plugin_element], naming):
             continue
         if rule.target.startswith("/"):
             message = f"{claim.value!r} applies to the whole process, also to nodes of other robots"

@@ -236,9 +236,10 @@ def _remaps(
         made = Insertion(parent, wrap, xml, "topic", topic, target)
         yield made._replace(of_controllers=of_controllers)
     # Of a whole process those of the first robot count: they have to be the same for all.
+    sources = {it.source for it in rules}
     for rule in rules if naming.topics == NAMESPACE else ():
-        old, _, new = relative(rule, host, section, naming).partition(":=")
-        if old and all(it.source != old for it in rules):
+        old, _, new = relative(rule, namespace, section, naming).partition(":=")
+        if old and old not in sources:
             made = Insertion(parent, "", f"<remapping>{old}:={new}</remapping>", "topic", old, new)
             yield made._replace(of_controllers=True)
 

@@ -118,14 +118,11 @@ def named(host: etree._Element, section: PluginDefinition) -> tuple[str, str]:
         return name, namespace
 
 
-def relative(
-    rule: RemapRule, host: etree._Element, section: PluginDefinition, naming: Naming
-) -> str:
-    """Return an absolute rule of a whole process without the plugin's namespace, or nothing."""
+def relative(rule: RemapRule, namespace: str, section: PluginDefinition, naming: Naming) -> str:
+    """Return an absolute rule of a whole process without the plugin's ``namespace``, or nothing."""
     # Nothing for a rule that is not below it, or names of which stay absolute.""
     wide = section.process_wide and not (section.helper or rule.node or rule.scheme)
-    namespace = named(host, section)[1].strip("/")
-    root = f"/{namespace}/" if namespace else "/"
+    root = f"/{namespace.strip('/')}/" if namespace.strip("/") else "/"
     names = (rule.source, rule.target)
     stay = ABSOLUTE.intersection(names) or rule.target.strip("/") in naming.shared_topics
     if not wide or stay or not all(it.startswith(root) for it in names):
