@@ -92,13 +92,20 @@ def frames_by_topic(seen: Index) -> Mapping[str, Set[str]]:
     return {tree.topic: {*frames_in(tree)} for tree in seen.trees}
 
 
+@once
+def _sent_by_plain_names(seen: Index) -> Mapping[tuple[str, str, str], Sent]:
+    """Return sent transforms by robot of the child, and parent and child without the robot's name."""
+    plain = seen.plain_frame
+    return {(seen.frame_robot(it.child), plain(it.parent), plain(it.child)): it for it in seen.sent}
+
+
 def no_odometry(seen: Index, robot: str, odom: str, root: str) -> str:
     """Return the cause of a tree in pieces: nothing is sent below an odometry frame, or elsewhere."""
     if other := sent_elsewhere(seen, robot, odom, root):
         return f"{other.publishers[0]} sends {odom} -> {root} on {other.topic}: bring it to tf, too"
     plain = seen.plain_frame(odom), seen.plain_frame(root)
-    for it in (it for it in seen.sent if seen.frame_robot(it.child) in ("", robot)):
-        if (seen.plain_frame(it.parent), seen.plain_frame(it.child)) == plain:
+    for owner in ("", robot):
+        if it := _sent_by_plain_names(seen).get((owner, *plain)):
             return f"{it.parent} -> {it.child} is sent: use one name for each frame"
     return f"no node sends {odom} -> {root}: is odometry started, are its frames the same?"
 
