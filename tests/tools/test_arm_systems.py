@@ -122,7 +122,7 @@ def played(name: str, release: str, plan: FleetPlan) -> System:
             nodes.append(f"{at.namespace.rstrip('/')}/{at.name}")
             there = known.get(node, built_in(release).nodes[kind])
             ends += endpoints(kind, there, at, release) if kind in facts(release) else ()
-    if release == "lyrical":
+    if release in ("lyrical", "rolling"):
         # hardware_component_interface.cpp:119-133: each component is a node beside the manager's.
         for robot in plan.robots:
             manager = placed[robot.spec.name, "controller_manager"]
