@@ -11,6 +11,7 @@ from multibot_rewrite.system.records import (
     NOT_KNOWN_PROCESS,
     NOT_READ,
     NOWHERE,
+    RUNS,
     Node,
     System,
     answering,
@@ -104,7 +105,9 @@ def coverage(system: System, graph: System | None = None) -> Coverage:
     owned = name_ownership(system)
     # A name that is made at run time is that of a node's helper.
     for it in {it.name: it for it in system.nodes if "*" not in it.name}.values():
-        if not is_tool(owned.without_robot(it.name, it.robot)):
+        # What only may run is none that is missed.
+        expected = not compared or it.sure == RUNS or it.name in there
+        if expected and not is_tool(owned.without_robot(it.name, it.robot)):
             nodes.setdefault(it.robot, []).append(it)
     rows = []
     for robot, own in nodes.items():

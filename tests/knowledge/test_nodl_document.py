@@ -65,7 +65,10 @@ WRONG = {
     ),
     "nodl_version: 2\naction_servers:\n  - {name: go, type: a/action/B, qos: {}}\n": (3, "'qos'"),
     "nodl_version: 2\nparameters:\n  a: {default_value: 1}\n": (3, "has no type"),
-    "nodl_version: 2\nparameters:\n  a: {type: float}\n": (3, "'float' is no type; write one like string"),
+    "nodl_version: 2\nparameters:\n  a: {type: float}\n": (
+        3,
+        "'float' is no type; write one like string",
+    ),
     "nodl_version: 2\nparameters:\n  a: {type: int, default: 1}\n": (3, "'default' is not known"),
     "nodl_version: 2\ninclude: [{ref: /etc/passwd}]\n": (2, "'/etc/passwd'"),
     "nodl_version: 2\ninclude: [{ref: 'local:///etc/passwd'}]\n": (2, "local:///etc/passwd"),

@@ -113,7 +113,7 @@ def test_many_robots_share_processes() -> None:
     done = rehearse(6, ROVER, *names, "--node-set", "robot_state", "--layout", "L2")
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     # Two of the node set and five plugins.
-    assert "12 robots, 7 nodes each: all known, all seen; 0 findings: as planned" in done.stderr
+    assert "12 robots, 6 nodes each: all known, all seen; 0 findings: as planned" in done.stderr
 
 
 def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str]) -> None:

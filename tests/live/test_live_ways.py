@@ -95,13 +95,9 @@ def test_what_a_release_hands_on_is_as_planned(
     case: Case, done: dict[Case, CompletedProcess[str]]
 ) -> None:
     assert done[case].returncode == 0, done[case].stdout
-    # joint_state_publisher of robot_state may run beside the broadcaster of the plugin.
-    is_sent_twice = case == FORWARDED_TO_UNKNOWN
-    verdict = "no error, see the warnings" if is_sent_twice else "as planned"
-    assert f": {verdict} (" in done[case].stderr
-    codes = {word for word in done[case].stdout.split() if word.startswith("MG")}
-    assert "warning: MG324" in done[case].stdout or not is_sent_twice
-    assert codes <= ({"MG324"} if is_sent_twice else set()), done[case].stdout
+    # joint_state_publisher, which only may run, is not played beside the broadcaster of the plugin.
+    assert ": as planned (" in done[case].stderr
+    assert not {word for word in done[case].stdout.split() if word.startswith("MG")}
     assert not {" MG1", " MG2"} & {it[:4] for it in done[case].stdout.split(":")}
 
 
