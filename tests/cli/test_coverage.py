@@ -18,6 +18,7 @@ from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system.coverage import coverage
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
+    MAY,
     PUBLISHES,
     TOPIC,
     End,
@@ -224,6 +225,16 @@ def planned(robots: Iterable[tuple[str, int, int]]) -> System:
 )
 def test_robots_that_differ_are_named(robots: list[tuple[str, int, int]], text: str) -> None:
     assert coverage(planned(robots)).in_words == text
+
+
+def test_a_node_that_only_may_run_is_not_missed() -> None:
+    """One that surely runs is; one that may run and is there is seen."""
+    plan = planned([("a", 3, 0)])
+    sure, absent, there = plan.nodes
+    plan = plan._replace(nodes=(sure, absent._replace(sure=MAY), there._replace(sure=MAY)))
+    assert coverage(plan).in_words == "1 robot, 3 nodes: all known"
+    seen = System((Node(there.name),), ())
+    assert coverage(plan, seen).in_words == "1 robot, 2 nodes: all known, 1 of 2 seen"
 
 
 DEPTH_CAMERA = (
