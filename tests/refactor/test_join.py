@@ -11,6 +11,8 @@ from paths import fixture_text
 
 from multibot_rewrite import InputError, Part, UsageError, join, split
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.description.rewriters.tree import builtin_tree
+from multibot_rewrite.related_files.join import join_plain
 
 ARM = fixture_text("join_arm.urdf")
 HAND = """<!-- a hand: -- two - dashes --->
@@ -494,3 +496,12 @@ def test_two_materials_that_got_the_prefix_lose_it_again() -> None:
     made = join([Part(arm), Part(hand, "base", prefix="h_", name="hand")])
     assert all(f'<material name="h_{it}">'.encode() in made.data for it in ("red", "blue"))
     assert split(made.data)["hand"] == hand
+
+
+def test_a_fleet_of_parts_tells_meshes_that_are_looked_up_beside_their_file(tmp_path: Path) -> None:
+    arm = tmp_path / "arm.urdf"
+    mesh = '<visual><geometry><mesh filename="m/a.stl"/></geometry></visual>'
+    arm.write_text(f'<robot name="arm"><link name="base">{mesh}</link></robot>')
+    parts = Part(str(arm)), Part(str(arm), at="base", prefix="left_")
+    made = join_plain(parts, "fleet.yaml:1", builtin_tree((), "jazzy"), False)
+    assert any("'m/a.stl' is looked up from the folder" in it for it in made.notes)

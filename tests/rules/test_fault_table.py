@@ -29,7 +29,7 @@ from healthy_twins import TWINS, sent_twice_alike
 from paths import ROOT
 from vendor_graphs import RELEASES, VENDORS
 
-from multibot_rewrite.base.findings.finding import NOTE
+from multibot_rewrite.base.findings.finding import NOTE, WARNING
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.producers.bags.read import RecordedTopic
 from multibot_rewrite.producers.bags.recording import as_snapshot
@@ -99,6 +99,15 @@ def test_a_static_transform_that_is_sent_twice_alike_is_a_note() -> None:
     (found,) = diagnose(sent_twice_alike()).findings
     assert (found.code, found.level) == ("MG408", NOTE)
     assert "/static_transform_publisher_x" in found.hint
+
+
+def test_a_tool_that_reads_too_late_is_a_note_beside_the_nodes_of_the_robot() -> None:
+    fault = NAMED["a map that is read without transient_local"]
+    found = [it for it in diagnose(fault.change(fault.system())).findings if it.code == "MG309"]
+    assert {it.node: it.level for it in found} == {
+        "/robot1/amcl": WARNING,
+        "/foxglove_bridge": NOTE,
+    }
 
 
 @pytest.mark.more
