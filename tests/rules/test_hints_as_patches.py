@@ -304,3 +304,68 @@ def test_no_hint_goes_past_what_limits_velocities() -> None:
 )  # fmt: skip
 def test_who_has_to_change(lines: list[str], hint: str) -> None:
     assert [it for code, it, _ in said(*lines) if code == "MG320"] == [hint]
+
+
+ODOM, JOY = "nav_msgs/msg/Odometry", "sensor_msgs/msg/Joy"
+IMAGE, CLOUD = "sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"
+
+
+@pytest.mark.parametrize(
+    ("wanted", "offered", "type_", "is_joined"),
+    [
+        ("ekf_node wheel/odom", "navsat_transform odometry/gps", ODOM, False),
+        ("ekf_node wheel/odom", "diff_drive odom", ODOM, True),
+        ("ekf_node visual/odom", "diff_drive wheel/odom", ODOM, False),
+        ("navsat_transform odometry/filtered", "ekf_node odometry/global", ODOM, True),
+        ("navsat_transform odometry/filtered", "diff_drive odom", ODOM, False),
+        ("controller_server odom", "navsat_transform odometry/gps", ODOM, False),
+        ("controller_server odom", "ekf_node odometry/filtered", ODOM, True),
+        ("fusion odometry/global", "ekf_local odometry/local", ODOM, False),
+        ("amcl scan_front", "rear_lidar scan_rear", SCAN, False),
+        ("amcl scan", "front_lidar scan_front", SCAN, True),
+        ("stereo left/image_raw", "camera right/image_raw", IMAGE, False),
+        ("costmap camera/depth/points", "velodyne velodyne_points", CLOUD, False),
+        ("costmap points", "camera camera/depth/points", CLOUD, True),
+        ("navsat_transform gps/fix", "nmea_driver fix", "sensor_msgs/msg/NavSatFix", True),
+    ],
+)
+def test_no_rule_joins_two_sensors_or_places(
+    wanted: str, offered: str, type_: str, is_joined: bool
+) -> None:
+    (reader, name), (sender, other) = wanted.split(), offered.split()
+    for robot in ("", "/robot1"):
+        ((_, hint, is_patch),) = said(
+            f"{robot}/{reader} subscribes {robot}/{name} {type_}",
+            f"{robot}/{sender} publishes {robot}/{other} {type_}",
+        )
+        assert is_patch is is_joined and other in hint
+
+
+ONE_EACH = "{} sends it to all robots: start one for each, in its namespace"
+
+
+@pytest.mark.parametrize(
+    ("sender", "name", "type_", "more", "hint"),
+    [
+        ("/bridge", "model/box/pose", "geometry_msgs/msg/PoseStamped", "",
+         "pass the rule /robot1/model/box/pose:=/model/box/pose, or put /model/box/pose in"
+         " shared_topics of the fleet file"),
+        ("/panel", "e_stop", "std_msgs/msg/Bool", "", ONE_EACH.format("/panel")),
+        ("/lidar", "scan", SCAN, "", ONE_EACH.format("/lidar")),
+        ("/joy_node", "joy", JOY, "", ONE_EACH.format("/joy_node")),
+        ("/teleop", "cmd_vel", TWIST, "", ONE_EACH.format("/teleop")),
+        # robot2 has its own, so this is robot1's.
+        ("/lidar", "scan", SCAN, "/robot2/lidar publishes /robot2/scan",
+         "pass the rule /scan:=/robot1/scan to /lidar, or start it in the namespace"),
+        # Each has its own sender.
+        ("/robot1/finder", "model/box/pose", "geometry_msgs/msg/PoseStamped",
+         "/robot2/finder publishes /model/box/pose",
+         "pass the rule /model/box/pose:=/robot1/model/box/pose to /robot1/finder, or start it in the"
+         " namespace"),
+    ],
+)  # fmt: skip
+def test_what_is_everybodys_stays(sender: str, name: str, type_: str, more: str, hint: str) -> None:
+    lines = [f"{sender} publishes /{name} {type_}", *[f"{more} {type_}"] * bool(more)]
+    readers = (f"/robot{it}/node subscribes /robot{it}/{name} {type_}" for it in "12")
+    found = [it for code, it, _ in said(*readers, *lines) if code == "MG303"]
+    assert found[0] == hint
