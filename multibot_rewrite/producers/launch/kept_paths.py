@@ -107,7 +107,11 @@ def real_paths(text: str) -> str:
 
 def _real_path(path: str, below: str) -> str:
     """Return what a path ``below`` a launch file's folder is afterwards: a source, or GONE."""
-    first, *inside = below.strip("/").split("/")
+    # An installed package is no link: above its share folder is that of all packages.
+    path, below = map(os.path.normpath, (path, below.strip("/")))
+    first, *inside = below.split("/")
+    if first in (NOT_INSTALLED, SOURCES) and inside[:1] == ["lib"] and len(inside) > 1:
+        return "/".join((f"$(find-pkg-prefix {inside[1]})", *inside))
     if first == NOT_INSTALLED and len(inside) > 1:
         return "/".join((f"$(find-pkg-share {inside[1]})", *inside[2:]))
     if first != SOURCES or inside[:1] != ["share"]:
