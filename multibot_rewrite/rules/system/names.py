@@ -299,13 +299,18 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
                 yield from _unserved_findings(seen, end, served)
 
 
-def not_managed(seen: Index, manager: str, nodes: Sequence[str], else_: str = "") -> Cause:
-    """Return how a lifecycle manager is to leave nodes out that it has in its list."""
+def not_managed(
+    seen: Index, manager: str, nodes: Sequence[str], else_: str = "", meant: str = ""
+) -> Cause:
+    """Return how a manager is to leave nodes out that it has in its list, or to list the meant one."""
     asked = (it.name for it in seen.by_node[manager] if it.name.endswith(words.CHANGE_STATE))
     listed = unique(it.removesuffix(words.CHANGE_STATE) for it in asked)
     space = manager.rpartition("/")[0] + "/"
-    names = parameter_text([it.removeprefix(space) for it in listed if it not in nodes])
+    left = (it if it not in nodes else meant for it in listed)
+    names = parameter_text([it.removeprefix(space) for it in left if it])
     hint = f"{else_}leave {shorten(nodes)} out of {words.NODE_NAMES} of {manager}"
+    if meant:
+        hint = f"write {meant} for {shorten(nodes)} in {words.NODE_NAMES} of {manager}"
     return Cause(hint, settings=(Setting(manager, words.NODE_NAMES, names),))
 
 
@@ -351,7 +356,7 @@ def _unserved_findings(seen: Index, end: End, served: _Served) -> Iterator[Findi
         )
         instead = f"; {meant} runs" if meant else ""
         wait = f"it waits for {listed} and activates nothing after it: start it"
-        cause = not_managed(seen, end.node, [listed], f"{wait}, or ")
+        cause = not_managed(seen, end.node, [listed], f"{wait}, or ", meant)
         if outside:
             moved = Remap(outside, "__ns", space)
             cause = Cause(f"{wait} in the namespace, with -r __ns:={space}", remaps=(moved,))
