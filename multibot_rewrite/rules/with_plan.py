@@ -146,7 +146,7 @@ def _hint_of_plan(
     olds, planned = {rule.old for rule in led}, {one.node for one in by_plan}
     led += (rule for rule in it.remaps if rule.old in olds and rule.node not in planned)
     places = {one.node: f" (see {one.file}:{one.line})" for one in others if one.file}
-    nodes = unique(it.node for it in (*others, *led))
+    nodes = unique([*(it.node for it in others), *(it.node for it in led)])
     more = [f"{node}{places.get(node, '')}" for node in nodes if node != first.node]
     same = f"; the same for {shorten(more)}" if more else ""
     remaps = of_one_target(led)
