@@ -82,6 +82,7 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
     tell = lambda said: send(SO_FAR + said)  # noqa: E731
     with _open_session(request, stop, tell) as session:
         if request.watch:
+            gc.enable()  # no short process any more
             for snapshot in watch(session):
                 send(to_json(snapshot))
             return 0
