@@ -6,6 +6,7 @@ It sends one snapshot when the graph is settled or, when watching, one after eac
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import threading
