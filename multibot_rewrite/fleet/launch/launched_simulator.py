@@ -86,7 +86,7 @@ def nodes_of_world(file: FleetFile, robots: Collection[str]) -> Iterator[Run]:
         for it in [it for it in root.iter("model", "include") if name_in_world(it) in robots]:
             cast("_Element", it.getparent()).remove(it)
         reading = read_tree(root, builtin_tree((), file.distro, ROS_2).definitions)
-        lines = [it.sourceline or 1 for it in root.iter("plugin")]
+        lines = [cast("int", it.sourceline) for it in root.iter("plugin")]
         for node, run in zip(reading.nodes, plugin_nodes(reading, ""), strict=True):
             yield with_names(run)._replace(place=Place(own.world, lines[node.number]))
 
