@@ -81,7 +81,9 @@ def name_in_world(one: _Element) -> str:
 def nodes_of_world(file: FleetFile, robots: Collection[str]) -> Iterator[Run]:
     """Yield the nodes of a Gazebo Classic world that launch files name, without those of ``robots``."""
     own = launched_simulator(file)
-    if own.is_classic and os.path.isfile(own.world):
+    if not own.is_classic or not os.path.isfile(own.world):
+        return
+    with suppress(InputError):  # it is told where the launch is read
         root = read_xml(read_file(own.world), own.world)
         for it in [it for it in root.iter("model", "include") if name_in_world(it) in robots]:
             cast("_Element", it.getparent()).remove(it)
