@@ -91,9 +91,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "plain given names": lambda seen, it: (
         seen.plain(x.name) for x in _planned_ends(seen, it) if x.role in GIVES
     ),
-    "lacking": lambda seen, it: (
-        x.node for x in _planned_ends(seen, it) if x.name in it.names[:1]
-    ),
+    "lacking": lambda seen, it: (x.node for x in _planned_ends(seen, it) if x.name in it.names[:1]),
     "given names": lambda seen, it: (x.name for x in _planned_ends(seen, it) if x.role in GIVES),
     "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
     "described robots": _robots_of_description,
@@ -214,8 +212,7 @@ def _merged_finding(own: Sequence[Finding], code: str) -> Finding:
 
 
 def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """Return the findings; an unplanned node is named in the first one about it, if there is one,
-    and those of the other robots that are called like it."""
+    """Return the findings; an unplanned node is named in the first one about it or its likes."""
     every = [*found]
     nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
     gone: set[int] = set()
