@@ -109,6 +109,30 @@ def test_a_command_is_started_for_each_robot(
     assert "2 other processes started as they are" in said
 
 
+PACKAGE = "<package><name>own</name></package>"
+SCRIPT_BY = (
+    "lib('own'), '/lib/own/a.py'",
+    "share('own'), '/../../lib/own/a.py'",
+    "run('a.py', 'own')",
+)
+
+
+@pytest.mark.parametrize("found", SCRIPT_BY)
+def test_a_program_of_a_package_that_is_not_built_is_found_when_it_starts(
+    found: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where it is installed is known then: its package is here as sources alone."""
+    (tmp_path / "package.xml").write_text(PACKAGE)
+    setup = "from launch_ros.substitutions import ExecutableInPackage as run, FindPackagePrefix as "
+    setup += "lib, FindPackageShare as share"
+    body = f"ExecuteProcess(cmd=['python3', [{found}], '9']),"
+    every = [it.values for it in actions(tmp_path, body, setup) if it.kind == "ExecuteProcess"]
+    assert [it["cmd"] for it in every] == [["python3", "/own/lib/own/a.py", "9"]]
+    said = capsys.readouterr().err
+    assert "process a.py (python3, " in said
+    assert "MF823 " not in said.replace("MF823 launch is not installed here", "")
+
+
 def test_a_command_runs_once_where_the_fleet_file_says_so(tmp_path: Path) -> None:
     body = "ExecuteProcess(cmd=['MicroXRCEAgent']), ExecuteProcess(cmd=['ros2', 'bag', 'record']),"
     found = told(actions(tmp_path, body, given={"robots": "2"}))
