@@ -14,10 +14,15 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap, Rule
 from multibot_rewrite.base.wording import shorten, unique
-from multibot_rewrite.rules.folded import has_to_give, of_one_target
+from multibot_rewrite.rules.folded import GIVES, has_to_give, of_one_target, unplanned_ends_of
 from multibot_rewrite.rules.system.changed import untold
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
-from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
+from multibot_rewrite.rules.system.planned_ends import (
+    matches,
+    missing,
+    missing_endpoint,
+    unplanned_nodes,
+)
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
 from multibot_rewrite.rules.system.planned_nodes import sender_not_planned
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
@@ -54,9 +59,13 @@ def one_for_a_cause(
     said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
+    new = {*unplanned_nodes(plan, seen)} - {*matches(plan, seen).values()}
     kept = []
     for at, it in enumerate(left):
         names = {*it.names} if at not in causes and _is_absence(it, rules) else set()
+        # What a node gives that is no planned one is of that node's making.
+        if not new.isdisjoint(x.node for x in unplanned_ends_of(seen, it) if x.role in GIVES):
+            names = set()
         if not (names & lost or (names and names <= loose)):
             kept.append(said.get(at, it))
     every = {*unexplained([*kept, *by_plan])}

@@ -397,7 +397,7 @@ def _calls_in_vain(seen: Index, end: End) -> bool:
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     # A name below a node that runs is that node's own.
     below = end.name.rpartition("/")[0] in seen.node
-    common = end.type.startswith(COMMON) and not (below and end.type.startswith("std_srvs/"))
+    common = end.type.startswith(COMMON) and not end.type.startswith("std_srvs/")
     # Beside other robots it may be one that is not started yet, if it is not its own.
     own = seen.robot(end.name) if below else seen.robot(end.node)
     others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
