@@ -117,7 +117,7 @@ _ONE_OF = {
     **dict.fromkeys(("MG303", "MG306", "MG307", "MG501"), ("names", 2)),
     **{"MG102": ("node", 2), "MG304": ("node", 3), "MG101": ("robot", 3), "MG322": ("robot", 3)},
 }
-_UNPLANNED = "MG108"
+_UNPLANNED, _LACKING = "MG108", ("MG101", "MG102")
 # From bad to good.
 _BAD = (ERROR, INCONCLUSIVE, WARNING, NOTE)
 # The codes of each kind of cause, as they begin; what is in none comes last.
@@ -158,6 +158,14 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     """Return a cause with its consequences in the hint, at the worst of their levels."""
     if not explained:
         return it
+    # What the plan has and no rule brings: the rules alone would show it.
+    ruled = {rule.node for rule in it.remaps} if it.code not in _LACKING else ()
+    lost = [x.node for x in explained if x.code in _LACKING and not x.remaps]
+    if lost := [node for node in unique(lost) if ruled and node not in ruled]:
+        told = (
+            f"by the plan {shorten(lost)} has to give what is waited for: start it, or see its log"
+        )
+        it = it._replace(hint=told, remaps=(), settings=())
     first = explained[0]
     others = unique(one.code for one in explained if one.code != first.code)
     more = f", and {shorten(others)}" if others else ""

@@ -252,7 +252,7 @@ def _how_to_join(seen: Index, readers: Sequence[End], other: Ends, sender: str) 
         hint = f"pass the rule {other.name}:={end.name} to {shorten(own)}, or start it in the namespace"
         return Cause(hint, remaps=tuple(Remap(it, other.name, end.name) for it in own))
     robot, likes = seen.robot(other.name), _robots_with_node(seen).get(end.node, set())
-    if robot and likes and robot not in likes and not seen.robot(end.node):
+    if robot and likes - {""} and robot not in likes and not seen.robot(end.node):
         space = other.name.removesuffix(seen.plain(other.name))
         hint = f"start it in the namespace of {robot}, with -r __ns:={space}"
         return Cause(hint, remaps=(Remap(end.node, "__ns", space),))
