@@ -174,3 +174,30 @@ def test_what_plugins_of_a_classic_world_send_is_shared(tmp_path: Path) -> None:
     files = {"fleet.yaml": fleet, "w.world": world, "go.launch.py": launch, "rows.yaml": rows}
     read, _ = shared_of(tmp_path, **files)
     assert {it for it in read if not it.startswith("/robot1/")} == {"/model/box/pose"}
+
+
+@pytest.mark.parametrize(
+    ("layout", "windows"),
+    [("both", ["/robot1/rviz2", "/robot2/rviz2"]), ("frames-per-robot", ["/rviz2"])],
+)
+def test_the_plan_has_the_windows_that_the_build_opens(
+    layout: str, windows: list[str], tmp_path: Path
+) -> None:
+    """One RViz reads one tf topic: an RViz for all is one for each where each has its own."""
+    launch = (
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+        "def generate_launch_description():\n    return LaunchDescription([\n"
+        "        Node(package='rviz2', executable='rviz2')])\n"
+    )
+    (tmp_path / "go.launch.py").write_text(launch)
+    fleet = FLEET.format(layout=layout, rover=ROVER, shared="[]")
+    (tmp_path / "fleet.yaml").write_text(fleet.replace("node_sets: nav2", "launch: go.launch.py"))
+    made = planned_fleet(tmp_path / "fleet.yaml")
+    plan = expected(made.fleet)
+    assert [it.name for it in plan.nodes if it.name.endswith("rviz2")] == windows
+    tf = {it.name for it in plan.ends if it.node in windows and it.name.endswith("/tf")}
+    assert tf == {it.replace("rviz2", "tf") for it in windows}
+    (text,) = (
+        it.data.decode() for it in make_outputs(made).files if it.path.endswith(".launch.py")
+    )
+    assert ("f'/{name}/tf'" in text.partition("rviz2")[2]) is (layout == "both")
