@@ -159,12 +159,12 @@ def test_what_is_given_once_is_shared_and_what_is_the_robots_is_not(
 
 
 def test_what_plugins_of_a_classic_world_send_is_shared(tmp_path: Path) -> None:
-    """gazebo_plugins gazebo_ros_p3d.cpp sends odom; the robot's own model in the world is spawned."""
+    """gazebo_plugins gazebo_ros_p3d.cpp sends odom."""
     p3d = (
         "<model name='{0}'><link name='l'/><plugin name='p3d' filename='libgazebo_ros_p3d.so'><ros>"
         "<namespace>/model/{0}</namespace><remapping>odom:=pose</remapping></ros></plugin></model>"
     ).format
-    world = f"<sdf version='1.6'><world name='w'>{p3d('box')}{p3d('bot')}</world></sdf>"
+    world = f"<sdf version='1.6'><world name='w'>{p3d('box')}</world></sdf>"
     start = "Node(package='acme', executable='follow', name='follow')"
     launch = (
         "from launch import LaunchDescription\nfrom launch.actions import ExecuteProcess\n"
