@@ -141,22 +141,27 @@ def _with_cause(
 
 
 def _hint_of_plan(
-    it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]
+    it: Finding, by_plan: Sequence[Finding], known: Mapping[str, Rule]
 ) -> tuple[str, tuple[Remap, ...]]:
     """Return (the plan's hint, the remap rules that it names, those of all nodes named)."""
     first, *others = by_plan
-    if not _is_of_an_end(first, rules):
+    if not _is_of_an_end(first, known):
         return first.hint, first.remaps
-    if not _has_instead(first):
+    if it.settings or not _has_instead(first):
         return it.hint, it.remaps
     who = "it" if first.node == it.node else first.node
-    more = unique(
-        f"{one.node} (see {one.file}:{one.line})" if one.file else one.node
-        for one in others
-        if one.node != first.node
-    )
+    led = [rule for one in by_plan for rule in one.remaps]
+    # Those of which the plan says nothing, such as tools, have the finding's own rule.
+    olds, planned = {rule.old for rule in led}, {one.node for one in by_plan}
+    led += (rule for rule in it.remaps if rule.old in olds and rule.node not in planned)
+    places = {one.node: f" (see {one.file}:{one.line})" for one in others if one.file}
+    nodes = unique([*(it.node for it in others), *(it.node for it in led)])
+    more = [f"{node}{places.get(node, '')}" for node in nodes if node != first.node]
     same = f"; the same for {shorten(more)}" if more else ""
-    remaps = of_one_target(rule for one in by_plan for rule in one.remaps)
+    remaps = of_one_target(led)
+    if several := {it.node for it in {*led}.difference(remaps)}:
+        look = f"see their rules, and why {shorten(sorted(several))} uses one name for all robots"
+        return f"by the plan {who} {first.message}{same}; {look}", ()
     if not all(one.remaps for one in by_plan):
         remaps = ()
     return f"by the plan {who} {first.message}: {first.hint}{same}", remaps

@@ -481,7 +481,7 @@ NAV = "/robot1/controller_server"
          f"/robot2/a subscribes /robot2/halt {STRING}",
          f"/robot2/button publishes /robot1/halt {STRING}",
          f"MG311 error /robot2/button: publishes /robot1/halt, a name of robot1; {NAMES_ROBOT1};"
-         " pass the rule /robot1/halt:=halt to /robot2/button"),
+         " nobody else publishes /robot1/halt: start one for robot1 too"),
         (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/cmd_vel {TWIST}",
          "MG312 warning /robot1/teleop: publishes /robot1/cmd_vel, and so does"
          f" /robot1/controller_server; /robot1/driver obeys both; {CHOOSE}"),

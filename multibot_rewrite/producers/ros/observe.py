@@ -6,6 +6,7 @@ It sends one snapshot when the graph is settled or, when watching, one after eac
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import threading
@@ -84,6 +85,7 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
     tell = lambda said: send(SO_FAR + said)  # noqa: E731
     with _open_session(request, stop, tell) as session:
         if request.watch:
+            gc.enable()  # no short process any more
             for snapshot in watch(session):
                 send(to_json(snapshot))
             return 0
