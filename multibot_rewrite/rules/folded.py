@@ -241,7 +241,10 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
 def _users(seen: Index, it: Finding) -> Sequence[str]:
     """Return the nodes that have the names that a finding is about, or send its frames."""
     own = (x for name in it.names for x in _frame_senders(seen)[name] if seen.robot(x) == it.robot)
-    return unique((it.node, *(end.node for end in _ends(seen, it.names)), *own))
+    # Of a node that is missing, those of what it has to give.
+    gone = () if it.node in seen.node else _planned_ends(seen, it)
+    names = (*it.names, *(x.name for x in gone if x.role in GIVES and x.type != TF))
+    return unique((it.node, *(end.node for end in _ends(seen, names)), *own))
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
