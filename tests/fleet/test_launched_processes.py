@@ -1052,13 +1052,19 @@ def test_move_group_has_what_its_launch_file_and_its_files_say_of_pipelines(tmp_
     (tmp_path / "arm.srdf").write_text(srdf)
     (tmp_path / "kinematics.yaml").write_text("g: {kinematics_solver: k/K}\n")
     body = f"""Node(package='moveit_ros_move_group', executable='move_group', name='move_group',
-        parameters=['{tmp_path}/pipes.yaml', {{'ompl.planning_plugin': 'mine/Two'}}]),"""
+        parameters=['{tmp_path}/pipes.yaml', {{'ompl.planning_plugin': 'mine/Two'}}]),
+        Node(package='rviz2', executable='rviz2', parameters=[
+            {{'pilz.planning_plugins': 'a/B', 'robot_description_kinematics.g.x': 1}}]),"""
     more = "simulator: none\nsrdf: arm.srdf\nrelated_files: {moveit: [kinematics.yaml]}"
-    told = of(actions(tmp_path, body, more=more), "move_group")["parameters"]
+    found = actions(tmp_path, body, more=more)
+    told = of(found, "move_group")["parameters"]
     files = [Path(it).name for it in told if isinstance(it, str)]
     assert files.index("moveit_parameters.yaml") < files.index("pipes.yaml")
     rows = [at for at, it in enumerate(told) if "ompl.planning_plugin" in it]
     assert rows[-1] > max(at for at, it in enumerate(told) if isinstance(it, str))
+    # A window for one robot has them as well; names of joints are those of its own files.
+    made, own, *_ = of(found, "rviz2")["parameters"]
+    assert made.endswith("moveit_parameters.yaml") and own == {"pilz.planning_plugins": "a/B"}
 
 
 @pytest.mark.parametrize(

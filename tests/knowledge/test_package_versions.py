@@ -52,8 +52,8 @@ def test_every_package_of_a_known_node_is_in_the_table() -> None:
 @pytest.mark.parametrize(
     ("package", "release", "is_older"),
     [
-        ("slam_toolbox", "humble", False),  # 2.6.8 read, 2.6.10 there
-        ("slam_toolbox", "lyrical", True),  # of 2024-03
+        ("slam_toolbox", "humble", False),  # 2.6.10 read
+        ("slam_toolbox", "lyrical", True),  # of 2025-06
         ("twist_mux", "lyrical", False),
         ("controller_manager", "jazzy", False),  # an earlier version, read after Jazzy came
         ("nav2_amcl", "lyrical", False),
@@ -69,7 +69,7 @@ def test_what_was_read_before_a_release_is_older(
 
 
 def test_a_node_is_as_old_as_its_package() -> None:
-    said = "slam_toolbox 2.7.0 of 2024-03-03 was read, lyrical has 2.10.0"
+    said = "slam_toolbox 2.9.0 of 2025-06-09 was read, lyrical has 2.10.0"
     assert older_node("slam_toolbox", "lyrical") == said
     assert older_node("amcl", "lyrical") == older_node("", "lyrical") == ""
     assert older_node("slam_toolbox", "") == ""
@@ -85,6 +85,9 @@ def test_a_node_is_as_old_as_its_package() -> None:
         # key_teleop 1.8.0: "Default to TwistStamped"; Humble has 1.7.0.
         ("key_teleop", "key_vel", "twist_stamped_enabled", None, "jazzy kilted lyrical rolling"),
         ("key_teleop", "key_vel", "twist_stamped_enabled", True, " ".join(RELEASES)),
+        # robot_localization 3.9.2: "Switching stamped control to default true".
+        ("ekf_filter_node", "cmd_vel", "stamped_control", None, "kilted lyrical rolling"),
+        ("ekf_filter_node", "cmd_vel", "stamped_control", True, " ".join(RELEASES)),
     ],
 )
 def test_stamped_by_version(
@@ -110,7 +113,7 @@ def test_slam_of_several_robots_shares_its_scans() -> None:
 def test_inspect_shows_versions_and_days(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["inspect", "slam_toolbox", "--distro", "lyrical"]) == 0
     lines = [" ".join(it.split()) for it in capsys.readouterr().out.splitlines()]
-    assert "lyrical 2.10.0 a3442d2f6 2.7.0 2024-03-03 older than the release" in lines
+    assert "lyrical 2.10.0 b4d30ce 2.9.0 2025-06-09 older than the release" in lines
     assert not any("humble" in it for it in lines)
     assert main(["inspect", "twist_mux", "--output-kind", "json"]) == 0
     (node,) = json.loads(capsys.readouterr().out)["nodes"]
@@ -132,7 +135,7 @@ def test_what_hangs_on_an_older_source_is_a_note(release: Any, level: str) -> No
     )  # fmt: skip
     (found,) = (it for it in diagnose(system).findings if it.code == "MG306")
     assert found.level == level
-    assert ("slam_toolbox 2.7.0 of 2024-03-03 was read" in found.hint) == (level == NOTE)
+    assert ("slam_toolbox 2.9.0 of 2025-06-09 was read" in found.hint) == (level == NOTE)
 
 
 @pytest.mark.parametrize(("release", "level"), [("humble", WARNING), ("lyrical", NOTE)])

@@ -68,7 +68,7 @@ def test_a_node_of_both_tables_is_of_one_package(release: str) -> None:
 def test_a_parameter_that_names_something_is_known_as_a_name(release: str) -> None:
     found = []
     for facts, node in both(release):
-        if node is None and facts.name in NO_PARAMETERS:
+        if facts.name in NO_PARAMETERS:
             continue
         ends = [it.parameter for it in facts.endpoints if it.parameter]
         wanted = [(one, NAMES) for it in ends for one in it.split(ALSO)]

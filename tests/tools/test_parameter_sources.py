@@ -45,6 +45,7 @@ def in_cpp(line: str, header: str = "", before: str = "") -> list[tuple[str, str
         ('add_parameter("b", rclcpp::ParameterValue(std::string("b")), "note");', "b", "string", "b"),
         ('auto_declare<std::vector<std::string>>("joints", {});', "joints", "string_array", ""),
         ('getParam(x_, "layer_name", std::string("a"));', "<id>.layer_name", "string", "a"),
+        ('f::Base<a::B>::getParam(std::string("window"), w_);', "<id>.window", "", ""),
         ('node->get_parameter_or("frame", frame_, std::string("a"));', "frame", "string", "a"),
     ],
 )  # fmt: skip
@@ -126,6 +127,15 @@ def test_a_parameter_in_python(line: str, found: tuple[str, str, str]) -> None:
     (fact,) = python_parameters(text, PLACE._replace(path="a/bridge.py"), "bridge")
     assert (fact.path, fact.type, fact.default) == found
     assert (fact.owner, fact.place.line) == ("Bridge", 3)
+
+
+def test_parameters_of_a_table_in_python() -> None:
+    text = (
+        "ROWS = (('port', int, 9090), ('url', str, '/'))\n"
+        "for name, _, default in ROWS:\n    self.declare_parameter(name, default)\n"
+    )
+    found = {it.path: (it.type, it.default) for it in python_parameters(text, PLACE, "bridge")}
+    assert found == {"port": ("int", "9090"), "url": ("string", "/")}
 
 
 def test_python_2_has_no_parameters() -> None:

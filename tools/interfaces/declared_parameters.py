@@ -12,6 +12,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 from typing import NamedTuple
 
 from multibot_rewrite.knowledge.declared import DECLARED, READ
@@ -174,12 +175,33 @@ def python_parameters(text: str, place: Place, package: str) -> Iterator[Paramet
         return
     owner = next((it.name for it in module.body if isinstance(it, ast.ClassDef)), "")
     owner = owner or place.path.rpartition("/")[2].removesuffix(".py")
-    for node in ast.walk(module):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            for name, value, line in _declared(node.func.attr, node):
-                type_, default = _of_python(value)
-                at = place._replace(line=line)
-                yield ParameterFact(package, owner, name, type_, default, "", "", DECLARED, at)
+    calls = (it for it in ast.walk(module) if isinstance(it, ast.Call))
+    methods = ((it.func.attr, it) for it in calls if isinstance(it.func, ast.Attribute))
+    found = chain.from_iterable(_declared(*it) for it in methods)
+    for name, value, line in (*found, *_of_tables(module)):
+        type_, default = _of_python(value)
+        at = place._replace(line=line)
+        yield ParameterFact(package, owner, name, type_, default, "", "", DECLARED, at)
+
+
+def _of_tables(module: ast.Module) -> Iterator[tuple[str, ast.expr, int]]:
+    """Yield what ``for name, default in TABLE: self.declare_parameter(name, ...)`` declares."""
+    tables = {
+        it.targets[0].id: it.value
+        for it in module.body
+        if isinstance(it, ast.Assign) and isinstance(it.targets[0], ast.Name)
+    }
+    for loop in ast.walk(module):
+        if not isinstance(loop, ast.For) or not isinstance(loop.target, ast.Tuple):
+            continue
+        words = [ast.unparse(it) for it in loop.target.elts]
+        if f"declare_parameter({words[0]}, " not in ast.unparse(loop):
+            continue
+        at = next((at for at, word in enumerate(words) if "default" in word), 1)
+        named = [it.id for it in ast.walk(loop.iter) if isinstance(it, ast.Name)]
+        for row in (row for it in named if it in tables for row in ast.walk(tables[it])):
+            if isinstance(row, ast.Tuple) and len(row.elts) == len(words):
+                yield _python_name(row.elts[0]), row.elts[at], row.lineno
 
 
 def _declared(verb: str, call: ast.Call) -> Iterator[tuple[str, ast.expr | None, int]]:

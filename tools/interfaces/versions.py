@@ -38,12 +38,11 @@ ALL = {
     "sllidar_ros2": "3430009",
     "xarm_api": "0417b0f",
     "xarm_controller": "0417b0f",
-    "cartographer_ros": "d4c62f7",
     "depthai-ros": "b39899f",
     "nmea_navsat_driver": "548c84a",
     "ublox": "577ef65",
     "apriltag_ros": "beffb4c",
-    "topic_tools": "b903e6b",
+    "domain_bridge": "c2523e1",
     "depthimage_to_laserscan": "79b60bf",
     "realsense2_camera": "775b167c",
 }
@@ -76,10 +75,13 @@ CHANGELOGS = {
 
 
 class Release(NamedTuple):
-    """The repositories of a release on a day: the version of each, and its packages."""
+    """A release on a day: the version of each package, and the packages of each repository."""
 
     versions: Mapping[str, str]
     packages: Mapping[str, Sequence[str]]
+
+
+EMPTY = Release({}, {})
 
 
 def main(arguments: Sequence[str]) -> None:
@@ -98,8 +100,8 @@ def main(arguments: Sequence[str]) -> None:
         for release in RELEASES:
             commit = ALL.get(repository, commits.get(release, commits.get("", "")))
             versions = [
-                it[release].versions.get(repository, NONE) if release in it else NONE
-                for it in (first, now)
+                next((it.versions[name] for name in packages if name in it.versions), NONE)
+                for it in (first.get(release, EMPTY), now[release])
             ]
             if versions != [NONE, NONE] or commit:
                 found = CHANGELOGS.get(repository) or _read(commit, (*packages,), near)
@@ -119,10 +121,9 @@ def _release(rosdistro: Path, commit: str, release: str) -> Release:
         for name, it in yaml.load(text, yaml.CSafeLoader)["repositories"].items()
         if it.get("release", {}).get("version")
     }
-    return Release(
-        {name: it["version"].partition("-")[0] for name, it in given.items()},
-        {name: it.get("packages", [name]) for name, it in given.items()},
-    )
+    packages = {name: it.get("packages", [name]) for name, it in given.items()}
+    versions = {name: it["version"].partition("-")[0] for name, it in given.items()}
+    return Release({it: versions[name] for name in packages for it in packages[name]}, packages)
 
 
 def _commits() -> dict[str, dict[str, str]]:
@@ -142,17 +143,21 @@ def _commits() -> dict[str, dict[str, str]]:
 def _packages(
     now: Mapping[str, Release], read: dict[str, dict[str, str]]
 ) -> Mapping[str, Sequence[str]]:
-    """Return the packages of known nodes by their repository; one that no release has is its own."""
+    """Return the packages of known nodes by repository; one of no release by that of its source."""
     owner = {
         package: repository
         for release in now.values()
         for repository, packages in release.packages.items()
         for package in packages
     }
-    known = {it.package for it in every_release().nodes.values() if it.package}
+    known: dict[str, str] = {}
+    for node in every_release().nodes.values():
+        named = (it.partition("@")[0].rpartition("/")[2] for it in node.source)
+        if node.package:
+            known[node.package] = next(filter(read.__contains__, named), node.package)
     found = defaultdict[str, list[str]](list)
     for package in sorted(known):
-        repository = owner.get(package, package)
+        repository = owner.get(package, known[package])
         found[repository].append(package)
         if f"of {package}" in read:
             read[repository].update(read[f"of {package}"])
@@ -176,6 +181,7 @@ def _version(checkout: Path, commit: str, packages: Iterable[str]) -> str:
     every = _git(checkout, "ls-tree", "-r", "--name-only", commit).splitlines()
     manifests = [it for it in every if it.rpartition("/")[2] == "package.xml"]
     own = [it for it in manifests if it.split("/")[-2:-1] == [] or it.split("/")[-2] in {*packages}]
+    own += manifests
     text = _git(checkout, "show", f"{commit}:{own[0]}") if own else ""
     found = re.search(r"<version>\s*([0-9.]+)", text)
     return found[1] if found else NONE

@@ -104,7 +104,7 @@ def bridged_by(it: Run) -> Iterator[Row]:
     own = [read_file(path).decode("utf-8", "replace")] if os.path.isfile(path) else []
     rows = [*_argument_rows(it.program, it.arguments)]
     for text in (*own, *it.texts):
-        rows += _rows_of_text(text)
+        rows += rows_of_text(text)
     yield from (Row(row.end, expand(row.inside, below, it.name)) for row in rows)
 
 
@@ -173,7 +173,7 @@ def _topic_rows(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
 
 
 @lru_cache(maxsize=4096)  # a fleet has one a robot, and several rules ask for it
-def _rows_of_text(text: str) -> tuple[Row, ...]:
+def rows_of_text(text: str) -> tuple[Row, ...]:
     """Return the rows of a bridge file; none for another text."""
     rows: list[Row] = []
     try:
