@@ -210,30 +210,26 @@ def _of_contact_sensors(subject: Subject) -> Iterator[Problem]:
         above = sensor.getparent()
         link = "" if above is None else above.get("reference") or name_of(above)
         own = _collisions(subject).get(subject.robot.body.get(link, link))
-        written = sensor.findall("contact/collision") or [sensor]
-        for it in written if own is not None else ():
-            name = "" if it is sensor else text_of(it)
-            if it is not sensor and name in (own or ()):
-                continue
-            message = f"its link has no collision {name!r}: nothing is reported for it"
-            if it is sensor:
-                message = f"contact sensor {name_of(it)!r} names no collision: it reports nothing"
-            hint = _of_link(own or {}, link, name) if next(hinted, None) is not None else ""
-            yield Problem(it, message, "name" if it is sensor else "", hint)
+        # Without a <collision> its name is the default, which nothing has.
+        asked = {text_of(it): it for it in sensor.iterfind("contact/collision")} or {"": sensor}
+        for name in asked if own is not None else ():
+            if name not in (own or ()):
+                what = f"the collision {name!r}, which its link lacks" if name else "no collision"
+                message = f"contact sensor {name_of(sensor)!r} names {what}"
+                hint = (
+                    _collisions_of(link, own or {}, name) if next(hinted, None) is not None else ""
+                )
+                yield Problem(asked[name], message, "" if name else None, hint)
 
 
-def _of_link(own: Mapping[str, str], link: str, value: str) -> str:
+def _collisions_of(link: str, own: Mapping[str, str], value: str) -> str:
     """Return the hint with the collisions of the link that a value begins with, or of the sensor's."""
     name = value.rpartition("::")[2]
     begun = {it for it in own.values() if name.startswith(it)}
     meant = max(begun, key=len, default=link) if name else link
-    of_link = [it for it, owner in own.items() if owner == meant]
-    names = [name] if name in own else of_link or [*own]
-    return (
-        f"write {' or '.join(map(repr, names[:_LISTED]))}"
-        if names
-        else "give its link a <collision>"
-    )
+    names = [name] if name in own else [it for it, owner in own.items() if owner == meant] or [*own]
+    written = " or ".join(map(repr, names[:_LISTED]))
+    return f"write {written}" if names else "give its link a <collision>"
 
 
 def _of_plugins(subject: Subject) -> Iterator[Problem]:
