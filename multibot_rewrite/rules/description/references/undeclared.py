@@ -23,14 +23,13 @@ from multibot_rewrite.description.checks.references import (
     undeclared_names,
     where,
 )
-from multibot_rewrite.description.readback.active import hardware_class
 from multibot_rewrite.description.rewriters.contact import collisions
 from multibot_rewrite.description.rewriters.own_defaults import frame_sites
 from multibot_rewrite.description.rewriters.renaming import must_be_declared, names_in
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.knowledge.worlds import SIMULATORS
 from multibot_rewrite.rules.facts.memo import lacking, level_of_absence, memoized, since_jazzy
+from multibot_rewrite.rules.facts.simulators import simulated
 from multibot_rewrite.rules.subject import Subject, name_of
 
 # Its joints are those of the simulated PROTO, not of the URDF.
@@ -248,13 +247,11 @@ def _of_plugins(subject: Subject) -> Iterator[Problem]:
 
 
 def _of_simulated_hardware(subject: Subject) -> Iterator[Problem]:
-    loaded = {it for simulator in SIMULATORS for it in simulator.hardware}
     guesses = Guesses()
-    for system in subject.elements.tops("ros2_control"):
-        class_ = hardware_class(system)
-        for it in system.iterchildren("sensor") if class_ in loaded else ():
+    for system, plugin, _ in simulated(subject):
+        for it in system.iterchildren("sensor"):
             if (name := name_of(it)) not in _simulated_sensors(subject):
-                message = f"{class_} has no sensor {name!r}: its interfaces are not exported"
+                message = f"{text_of(plugin)} has no sensor {name!r}: nothing is exported for it"
                 hint = guesses.hint(name, _simulated_sensors(subject))
                 # It may be one that the real robot alone has.
                 advice = hint or "name it like Gazebo's sensor, or leave it out of the simulation"

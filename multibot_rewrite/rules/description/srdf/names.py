@@ -10,7 +10,7 @@ from functools import partial, wraps
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, WARNING, rule
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.planning_groups import (
     FREE_FLYER,
@@ -28,7 +28,6 @@ from multibot_rewrite.rules.description.references.undeclared import undeclared
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.subject import Subject
 
-SHOWN = 5
 # A rule about an SRDF.
 srdf_rule = partial(rule, formats=(SRDF,))
 
@@ -147,9 +146,8 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
         if first.setdefault(pair, it) is not it:
             found.append(it)
     if found:
-        names = [f"{text_of(it, 'link1')}-{text_of(it, 'link2')}" for it in found[:SHOWN]]
-        more = ", ..." if len(found) > SHOWN else ""
-        message = f"{plural(len(found), 'pair')} disabled twice: {', '.join(names)}{more}"
+        names = [f"{text_of(it, 'link1')}-{text_of(it, 'link2')}" for it in found]
+        message = f"{plural(len(found), 'pair')} disabled twice: {shorten(names, SEVERAL)}"
         yield Problem(found[0], message, None, "delete the line")
 
 
@@ -193,9 +191,8 @@ def adjacent_links(subject: Subject) -> Iterator[Problem]:
         if _both_checked(it, robot, alone) and _both_links(it) not in apart
     ]
     if left:
-        names = ", ".join(f"{it.parent}-{it.child}" for it in left[:SHOWN])
-        more = ", ..." if len(left) > SHOWN else ""
-        message = f"{len(left)} pairs of adjacent links are checked: {names}{more}"
+        names = shorten((f"{it.parent}-{it.child}" for it in left), SEVERAL)
+        message = f"{len(left)} pairs of adjacent links are checked: {names}"
         yield Problem(pairs[0], message, None, 'disable them with reason="Adjacent"')
 
 
