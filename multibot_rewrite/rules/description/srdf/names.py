@@ -124,16 +124,13 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
 def stale_pair(subject: Subject) -> Iterator[Problem]:
     """Report names in pairs that the URDF lacks, each once, at its first pair."""
     found = list(undeclared("MB807", subject))
-    names = Counter(_link_of(it) for it in found)
-    for it in found:
-        more = names.pop(_link_of(it), 0) - 1
+    links = [text_of(it.element, it.attribute or "") for it in found]
+    names = Counter(links)
+    for it, link in zip(found, links, strict=True):
+        more = names.pop(link, 0) - 1
         if more >= 0:
             also = f"; {more} more pairs name it" if more else ""
             yield it._replace(message=it.message + also)
-
-
-def _link_of(problem: Problem) -> str:
-    return text_of(problem.element, problem.attribute or "")
 
 
 @srdf_rule("MB809", "duplicate-pair", NOTE)
@@ -188,7 +185,7 @@ def adjacent_links(subject: Subject) -> Iterator[Problem]:
     left = [
         it
         for it in robot.joints
-        if _both_checked(it, robot, alone) and _both_links(it) not in apart
+        if _both_checked(it, robot, alone) and {it.parent, it.child} not in apart
     ]
     if left:
         names = shorten((f"{it.parent}-{it.child}" for it in left), SEVERAL)
@@ -200,13 +197,9 @@ def _has_shape(robot: Robot, link: str) -> bool:
     return robot.link[link].element.find("collision") is not None
 
 
-def _both_links(joint: Joint) -> frozenset[str]:
-    return frozenset((joint.parent, joint.child))
-
-
 def _both_checked(joint: Joint, robot: Robot, alone: set[str]) -> bool:
     """Return whether both links of a joint are checked against each other."""
-    ends = _both_links(joint)
+    ends = {joint.parent, joint.child}
     return len(ends) == 2 and all(
         it in robot.link and it not in alone and _has_shape(robot, it) for it in ends
     )
