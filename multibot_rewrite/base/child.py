@@ -12,7 +12,10 @@ from collections.abc import Mapping, Sequence
 from multibot_rewrite.base.start import module as start
 
 _START = os.path.abspath(start.__file__)
-_ISOLATED = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from {} import main; main()"
+_ISOLATED = (
+    "import gc, json, sys; gc.disable(); sys.path[:] = json.loads(sys.argv[1]);"
+    " from {} import main; main()"
+)
 _PATHS = "PYTHONPATH"
 # What of a repository's configuration would start a program, and what that is set to.
 _QUIET = {

@@ -34,13 +34,20 @@ from multibot_rewrite.planning.start import (
     Text,
     holds,
     in_order,
-    in_shares,
     keywords,
     name_in,
     path_of,
+    with_folders,
     with_rest,
 )
-from multibot_rewrite.producers.launch.performed import END, Action, Launching, performed, share
+from multibot_rewrite.producers.launch.performed import (
+    END,
+    Action,
+    Launching,
+    performed,
+    prefix,
+    share,
+)
 from multibot_rewrite.producers.launch.spawners import ros2_run, ros_arguments
 from multibot_rewrite.system.records import SIM_TIME, Place
 
@@ -244,7 +251,7 @@ class _Planned(NamedTuple):
         own = {
             name: "".join(with_rest(it, _REST)) if there else it.strip(":") for name, it in every
         }
-        own = {name: _with_shares(it) for name, it in own.items()}
+        own = {name: _with_folders(it) for name, it in own.items()}
         return {**there, **own, **domain}
 
     def other(self, it: Start, robot: str, clock: bool) -> Action:
@@ -278,13 +285,13 @@ class _Planned(NamedTuple):
         if isinstance(it, Mapping):
             return {key: self.value(one) for key, one in it.items()}
         if isinstance(it, str):
-            return _with_shares(it)
+            return _with_folders(it)
         return [self.value(one) for one in it] if isinstance(it, list | tuple) else it
 
 
-def _with_shares(text: str) -> str:
-    """Return a text with the share folders of packages."""
-    return "".join(share(it) if at % 2 else it for at, it in enumerate(in_shares(text)))
+def _with_folders(text: str) -> str:
+    """Return a text with the folders of packages."""
+    return "".join(with_folders(text, share, prefix))
 
 
 def _keywords(it: Start, there: Mapping[str, str]) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import Any
 
+from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.naming import Policy, make_naming
@@ -29,6 +30,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     nodes_with,
     under_plugins,
 )
+from multibot_rewrite.fleet.outputs.bridge_outputs import given_once
 from multibot_rewrite.fleet.robots.member import Member, is_for_simulator, member
 from multibot_rewrite.fleet.robots.rewritten_robots import Jobs
 from multibot_rewrite.fleet.robots.robot_nodes import node_sources
@@ -57,6 +59,10 @@ def plan_fleet(
 ) -> FleetPlan:
     """Return the plan of a fleet file with all problems of its table; raises as ``make_plan``."""
     plan = make_plan(file, jobs, trust)
+    if topics := given_once(plan):
+        shared = (*file.policy.get("shared_topics", SHARED_TOPICS), *topics)
+        file = file._replace(policy={**file.policy, "shared_topics": shared})
+        plan = make_plan(file, None, trust)
     with gc_paused():
         file, table, robots = plan.file, plan.fleet.table, plan.robots
         naming = plan.fleet.naming

@@ -321,7 +321,8 @@ def _launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
         if given and given.place.file in robot.spec.related_files.get("params", ()):
             continue
         prefix = str(given.value).strip("/") if given else ""
-        if not given or prefix == robot.frame_prefix.strip("/"):
+        named = bool(prefix) and all(it.startswith(f"{prefix}/") for it in robot.links)
+        if not given or named or prefix == robot.frame_prefix.strip("/"):
             continue
         layout = robot.names.naming.layout.name
         starts = f"{STATE_PUBLISHER} of {robot.spec.name} is started with"

@@ -171,7 +171,7 @@ def watched(
     # With ``--state`` it has the nodes' answers, also about ``parameters``.
     gc.enable()  # no short process any more
     asks = dict(parameters) if options.state else None
-    asked = Request(options.timeout or inf, watch=True, asks=asks)
+    asked = Request(options.timeout or inf, watch=True, headers=True, asks=asks)
     environs = {it: environ(it) for it in domains} or {0: environ(options.domain)}
     if options.zenoh:
         from multibot_rewrite.producers.zenoh import observe

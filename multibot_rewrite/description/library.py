@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import WARNING, Finding, RewriteRefused
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Change
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves_world_systems, make_naming
-from multibot_rewrite.base.releases import release_chosen_here
+from multibot_rewrite.base.releases import RELEASES, release_chosen_here
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.meeting import not_verified, said_of
@@ -327,14 +327,21 @@ def strip(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    before, release = b"", release_chosen_here(distro)
-    job = read_job(source, naming, urdf, None, definitions, file, (), trust, release=release)
-    if xacro is not None:
-        made, beside = (xacro, None) if urdf is None else (source, xacro)
-        of = read_job(
-            made, naming, beside, xacro_args, definitions, "", [robot], trust, release=release
-        )
-        job, before = job._replace(naming=of.naming), b"" if beside else of.data
-    beside_urdf = job.urdf_declarations
-    made = pipeline.strip(job.data, job.file, robot, job.naming, job.tree, beside_urdf, before)
-    return put_back(made, job.file, job.tree)
+    refused: RewriteRefused | None = None
+    # What said the release, as its package, need not be beside the rewritten description.
+    for release in (release_chosen_here(distro), *(() if distro else RELEASES)):
+        job = read_job(source, naming, urdf, None, definitions, file, (), trust, release=release)
+        before = b""
+        if xacro is not None:
+            made, beside = (xacro, None) if urdf is None else (source, xacro)
+            of = read_job(
+                made, naming, beside, xacro_args, definitions, "", [robot], trust, release=release
+            )
+            job, before = job._replace(naming=of.naming), b"" if beside else of.data
+        source, file, urdf_names = job.data, job.file, job.urdf_declarations
+        try:
+            made = pipeline.strip(source, file, robot, job.naming, job.tree, urdf_names, before)
+            return put_back(made, file, job.tree)
+        except RewriteRefused as error:
+            refused = refused or error
+    raise refused or AssertionError

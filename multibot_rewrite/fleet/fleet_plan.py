@@ -18,7 +18,7 @@ from multibot_rewrite.fleet.launch.launched_files import (
     with_launched_files,
     with_one_map,
 )
-from multibot_rewrite.fleet.launch.launched_simulator import with_launched_world
+from multibot_rewrite.fleet.launch.launched_simulator import nodes_of_world, with_launched_world
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
 from multibot_rewrite.fleet.robots.rewritten_robots import (
@@ -118,8 +118,15 @@ def make_plan(
             it.spec.namespace for it in robots if evidence[node_sources(it.spec)].is_placed
         )
         fleet = fleet._replace(clocks=clocks, apart=file.apart, models=models, placed=by_nodes)
-        fleet = with_relays(fleet, file)
+        of_world = nodes_of_world(file, {*map(_name_in_description, robots)})
+        table = fleet.table._replace(runs=(*fleet.table.runs, *of_world))
+        fleet = with_relays(fleet._replace(table=table), file)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
+
+
+def _name_in_description(robot: RewrittenRobot) -> str:
+    """Return what a robot's description calls it."""
+    return next((it.get("name", "") for it in robot.member.source.root.iter("robot", "model")), "")
 
 
 def _evidence(

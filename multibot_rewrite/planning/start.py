@@ -3,7 +3,7 @@
 
 import re
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 from multibot_rewrite.knowledge.programs import Program
@@ -11,8 +11,8 @@ from multibot_rewrite.planning.records import Rules
 from multibot_rewrite.planning.ways import SPAWN, Started, ros_arguments, spawner_arguments
 from multibot_rewrite.system.records import COMPONENT
 
-# The share folder of a package, as launch files in XML have it.
-_SHARE = re.compile(r"\$\(find-pkg-share ([\w-]+)\)")
+# A folder of a package, as launch files in XML have it.
+_FOLDER = re.compile(r"\$\(find-pkg-(share|prefix) ([\w-]+)\)")
 # These need no ``ros2 run``.
 _COMMANDS = {("rviz2", "rviz2"): ("rviz2",)}
 
@@ -258,9 +258,14 @@ def with_rest(text: str, rest: Any) -> Any:
     return [text, rest] if text[-1:] == ":" else text
 
 
-def in_shares(text: str) -> list[str]:
-    """Return a text cut at the share folders of packages: each second part is a package."""
-    return _SHARE.split(text)
+def with_folders(
+    text: str, shares: Callable[[str], str], prefixes: Callable[[str], str]
+) -> list[str]:
+    """Return a text cut at the folders of packages; each second part is what a function makes."""
+    cut = _FOLDER.split(text)
+    made = zip(cut[1::3], cut[2::3], cut[3::3], strict=True)
+    named = (((shares if kind == "share" else prefixes)(it), rest) for kind, it, rest in made)
+    return [cut[0], *(part for pair in named for part in pair)]
 
 
 def path_of(it: str | File) -> str:

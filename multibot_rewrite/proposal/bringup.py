@@ -60,15 +60,38 @@ class Robot(NamedTuple):
 
 def bringup_as_named(order: LaunchOrder) -> Bringup:
     """Return the named launch file; raises InputError if it cannot be read or starts nothing."""
-    # An argument that names the vendor's robot names each, if the file starts the same with it.
     graph = read_named(order).graph
-    given = tuple((name, _value_for_each(name, value)) for name, value in order.arguments)
-    each = order._replace(arguments=given)
+    return _named_for_each(Bringup(order, graph, starts_simulator(graph)))
+
+
+def _named_for_each(it: Bringup) -> Bringup:
+    """Return a bringup in which an argument that names the vendor's robot names each robot."""
+    spaces = _namespaces(it.graph)
+    defaults = ((one.name, one.default) for one in it.graph.declared)
+    named = {
+        name: value
+        for name, value in defaults
+        if value.strip("/") and any(f"{one}/".startswith(f"/{value.strip('/')}/") for one in spaces)
+    }
+    own = dict(it.order.arguments)
+    said = {**named, **own}
+    given = {name: _value_for_each(name, value) for name, value in said.items()}
+    changed = {name: value for name, value in given.items() if value != said[name]}
+    if not changed:
+        return it
     with suppress(InputError):
-        other = read_named(each).graph
-        if _effects(other) == _effects(graph):
-            order, graph = each, other
-    return Bringup(order, graph, starts_simulator(graph))
+        order = it.order._replace(arguments=tuple({**own, **changed}.items()))
+        graph = read_named(order).graph
+        # The file starts the same with it, and the namespace may be called so by chance.
+        named_so = not changed.keys() <= own.keys() and _namespaces(graph) == spaces
+        if _effects(graph) == _effects(it.graph) and not named_so:
+            return it._replace(order=order, graph=graph)
+    return it
+
+
+def _namespaces(graph: LaunchGraph) -> list[str]:
+    """Return the namespaces of a robot's own nodes."""
+    return [it.namespace for it in _own_nodes(graph)]
 
 
 def _value_for_each(argument: str, value: str) -> str:
@@ -103,7 +126,8 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
     for simulated in (wanted, *([] if robot.simulator else [not wanted])):
         if fits := [it for it in read if starts_simulator(it.graph) == simulated]:
             first, *others = sorted(fits, key=lambda it: (_is_trial(it, simulated), _sort_key(it)))
-            return Bringup(first.order, first.graph, simulated, tuple(it.order for it in others))
+            made = Bringup(first.order, first.graph, simulated, tuple(it.order for it in others))
+            return _named_for_each(made)
     return None
 
 

@@ -120,18 +120,19 @@ def below(name: str, above: str) -> str:
     return f"/{above}/{name}" if above and not name.startswith("/") else name
 
 
-def models(document: YamlText) -> Iterator[tuple[yaml.Node, str]]:
-    """Yield (entry, model) for each entry that is for a model."""
+def models(document: YamlText, context: Context) -> Iterator[tuple[yaml.Node, str]]:
+    """Yield (entry, model) for each entry that is for a model, but not for one of the world."""
     for node in items(document.root):
         for key in (BOTH, GZ):
             found = GZ_MODEL.fullmatch(text_in(row_of(node), key))
-            if found and not PLACEHOLDER.search(found["model"]):
-                yield node, found["model"]
+            name = found["model"] if found else ""
+            if found and name not in context.of_world and not PLACEHOLDER.search(name):
+                yield node, name
 
 
-def model_of(document: YamlText) -> str:
+def model_of(document: YamlText, context: Context) -> str:
     """Return the model that a file is for: the first in its gz topics, empty for none."""
-    return next((name for _, name in models(document)), "")
+    return next((name for _, name in models(document, context)), "")
 
 
 # gz topics of the whole simulation, like those below /world.
@@ -175,7 +176,7 @@ def rewrite_bridge(
 
 def read_bridge(document: YamlText, context: Context) -> NamedFile:
     """Return the names of a file, whatever its form; raises nothing."""
-    model, nowhere = model_of(document), Block(0, 0, 0)
+    model, nowhere = model_of(document, context), Block(0, 0, 0)
     loaded = (it for it in items(document.root) if not any(faults(it)))
     maps = (it for it in loaded if isinstance(it, yaml.MappingNode))
     entries = [_entry_of(it, nowhere, context, model, NOTHING, "") for it in maps]
@@ -194,7 +195,7 @@ def _entries(
     if root.value and not is_block(root):
         raise refused(document, root, "the list is in brackets; start each entry with a dash")
     refuse_anchors(document)
-    model = model_of(document)
+    model = model_of(document, context)
     assert document.root is not None
     found = zip(document.root.value, blocks(document, document.root), strict=True)
     return [
@@ -248,7 +249,9 @@ def _entry_of(
     made = _made_parts(context, bare_gz)
     found = None if made else GZ_MODEL.fullmatch(bare_gz)
     another = found and found["model"] != model and not PLACEHOLDER.search(found["model"])
-    if text_of(node, SERVICE) or another:
+    bare = bare_gz.strip("/")
+    of_world = bare in context.of_world and bare not in context.names.given
+    if text_of(node, SERVICE) or another or of_world:
         return BridgeEntry(node, block, ros, gz, ros, gz, False)
     new_gz = gz_topic(context, bare_gz, text_of(node, "gz_type_name"))
     new_ros = robot_topic(context.topics, bare_ros, known)

@@ -77,13 +77,14 @@ class Context(NamedTuple):
     ``names`` is the map of links, joints and frames, ``topics`` that of ROS names, both with a
     slot for the robot. ``nodes`` maps a node's name in the node set to its full name; nodes that
     serve all robots keep theirs. ``frames`` replace defaults: by the node's last name and the
-    parameter."""
+    parameter. ``of_world`` are models of the simulator's world and gz topics that it names."""
 
     names: RelatedNames
     topics: RelatedNames
     nodes: Mapping[str, str]
     distro: str
     frames: Frames = NO_FRAMES
+    of_world: frozenset[str] = frozenset()
 
 
 def make_context(

@@ -21,7 +21,7 @@ from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.system.index import TF, Index, ends_of, once
 from multibot_rewrite.system.records import PUBLISHES, SERVES, End
 
-_GIVES = (PUBLISHES, SERVES)
+GIVES = (PUBLISHES, SERVES)
 
 
 def _ends(seen: Index | None, names: Iterable[str]) -> Iterator[End]:
@@ -33,10 +33,16 @@ def _planned_ends(seen: Index, it: Finding) -> Sequence[End]:
     return seen.expected.by_node.get(it.node, ()) if seen.expected else ()
 
 
+def unplanned_ends_of(seen: Index, it: Finding) -> Iterator[End]:
+    """Yield the ends of a finding's names that the plan has not."""
+    known = seen.expected.by_key if seen.expected else seen.by_key
+    return (x for x in _ends(seen, it.names) if (x.node, x.kind, x.role, x.name) not in known)
+
+
 def has_to_give(seen: Index, it: Finding) -> bool:
     """Return whether a node has to send or serve, by the plan, what others wait for."""
     planned = _ends(seen.expected, it.names[:1])
-    return any(end.node == it.node and end.role in _GIVES for end in planned)
+    return any(end.node == it.node and end.role in GIVES for end in planned)
 
 
 def _robots_of_description(seen: Index, it: Finding) -> Iterable[str]:
@@ -69,13 +75,24 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "own names": lambda seen, it: (f"{seen.frame_robot(x) or it.robot} {x}" for x in it.names),
     "plain names": lambda seen, it: map(seen.plain, it.names),
     "frames": lambda seen, it: map(seen.plain_frame, it.names),
+    "bare frames": lambda seen, it: map(seen.plain_frame, map(seen.plain_frame, it.names)),
     "users": lambda seen, it: (end.node for end in _ends(seen, it.names)),
     "senders": lambda seen, it: (x.node for x in _ends(seen, it.names) if x.role == PUBLISHES),
     "frame senders": lambda seen, it: (x for name in it.names for x in _frame_senders(seen)[name]),
     "server": lambda seen, it: (seen.plain(name.rpartition("/")[0]) for name in it.names),
     "givers": lambda seen, it: (x for name in it.names for x in _senders(seen)[seen.plain(name)]),
     "planned names": lambda seen, it: (seen.plain(end.name) for end in _planned_ends(seen, it)),
-    "given names": lambda seen, it: (x.name for x in _planned_ends(seen, it) if x.role in _GIVES),
+    "unplanned": lambda seen, it: (x.node for x in unplanned_ends_of(seen, it)),
+    "new nodes' names": lambda seen, it: (
+        seen.plain(x.name)
+        for x in unplanned_ends_of(seen, it)
+        if x.role in GIVES and seen.expected and x.node not in seen.expected.by_node
+    ),
+    "plain given names": lambda seen, it: (
+        seen.plain(x.name) for x in _planned_ends(seen, it) if x.role in GIVES
+    ),
+    "lacking": lambda seen, it: (x.node for x in _planned_ends(seen, it) if x.name in it.names[:1]),
+    "given names": lambda seen, it: (x.name for x in _planned_ends(seen, it) if x.role in GIVES),
     "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
     "described robots": _robots_of_description,
     "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
@@ -195,13 +212,14 @@ def _merged_finding(own: Sequence[Finding], code: str) -> Finding:
 
 
 def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """Return the findings; an unplanned node is named in the first one about it, if there is one."""
+    """Return the findings; an unplanned node is named in the first one about it or its likes."""
     every = [*found]
     nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
     gone: set[int] = set()
     for at, it in enumerate(every) if nodes else ():
         users = _users(seen, it) if it.level in (ERROR, WARNING) and it.code != _UNPLANNED else ()
-        if left := [one for one in users if one in nodes and nodes[one] not in gone]:
+        plain = {seen.plain(one) for one in users if one in nodes and nodes[one] not in gone}
+        if left := [one for one in nodes if seen.plain(one) in plain and nodes[one] not in gone]:
             gone.update(map(nodes.__getitem__, left))
             verb = "is" if len(left) == 1 else "are"
             hint = f"{it.hint}; {shorten(left, SEVERAL)} {verb} not in the plan"

@@ -14,10 +14,15 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap, Rule
 from multibot_rewrite.base.wording import shorten, unique
-from multibot_rewrite.rules.folded import has_to_give, of_one_target
+from multibot_rewrite.rules.folded import GIVES, has_to_give, of_one_target, unplanned_ends_of
 from multibot_rewrite.rules.system.changed import untold
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
-from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
+from multibot_rewrite.rules.system.planned_ends import (
+    matches,
+    missing,
+    missing_endpoint,
+    unplanned_nodes,
+)
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
 from multibot_rewrite.rules.system.planned_nodes import sender_not_planned
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
@@ -54,9 +59,13 @@ def one_for_a_cause(
     said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
+    new = {*unplanned_nodes(plan, seen)} - {*matches(plan, seen).values()}
     kept = []
     for at, it in enumerate(left):
         names = {*it.names} if at not in causes and _is_absence(it, rules) else set()
+        # What a node gives that is no planned one is of that node's making.
+        if not new.isdisjoint(x.node for x in unplanned_ends_of(seen, it) if x.role in GIVES):
+            names = set()
         if not (names & lost or (names and names <= loose)):
             kept.append(said.get(at, it))
     every = {*unexplained([*kept, *by_plan])}
@@ -132,22 +141,27 @@ def _with_cause(
 
 
 def _hint_of_plan(
-    it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]
+    it: Finding, by_plan: Sequence[Finding], known: Mapping[str, Rule]
 ) -> tuple[str, tuple[Remap, ...]]:
     """Return (the plan's hint, the remap rules that it names, those of all nodes named)."""
     first, *others = by_plan
-    if not _is_of_an_end(first, rules):
+    if not _is_of_an_end(first, known):
         return first.hint, first.remaps
-    if not _has_instead(first):
+    if it.settings or not _has_instead(first):
         return it.hint, it.remaps
     who = "it" if first.node == it.node else first.node
-    more = unique(
-        f"{one.node} (see {one.file}:{one.line})" if one.file else one.node
-        for one in others
-        if one.node != first.node
-    )
+    led = [rule for one in by_plan for rule in one.remaps]
+    # Those of which the plan says nothing, such as tools, have the finding's own rule.
+    olds, planned = {rule.old for rule in led}, {one.node for one in by_plan}
+    led += (rule for rule in it.remaps if rule.old in olds and rule.node not in planned)
+    places = {one.node: f" (see {one.file}:{one.line})" for one in others if one.file}
+    nodes = unique([*(it.node for it in others), *(it.node for it in led)])
+    more = [f"{node}{places.get(node, '')}" for node in nodes if node != first.node]
     same = f"; the same for {shorten(more)}" if more else ""
-    remaps = of_one_target(rule for one in by_plan for rule in one.remaps)
+    remaps = of_one_target(led)
+    if several := {it.node for it in {*led}.difference(remaps)}:
+        look = f"see their rules, and why {shorten(sorted(several))} uses one name for all robots"
+        return f"by the plan {who} {first.message}{same}; {look}", ()
     if not all(one.remaps for one in by_plan):
         remaps = ()
     return f"by the plan {who} {first.message}: {first.hint}{same}", remaps

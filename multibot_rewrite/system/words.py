@@ -4,11 +4,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from fnmatch import translate
 from functools import lru_cache
 
-from multibot_rewrite.base.conventions import KINDS_OF_DATA, is_tool_word, only_looks, types_of
+from multibot_rewrite.base.conventions import (
+    KINDS_OF_DATA,
+    ROWS,
+    is_tool_word,
+    only_looks,
+    types_of,
+)
+from multibot_rewrite.base.lazy import lazy_compile
 
 # They set a robot in motion: of these types always, of the second ones where the name says so.
 _ALWAYS, _BY_NAME = types_of("drives"), types_of("drives-by-name")
@@ -25,9 +32,15 @@ _BODY, _OF_ONE_SENSOR, _NO_SENSOR, _OF_ONE_ROBOT = map(
 OF_EVERY_NODE = types_of("every-node")
 MAP = "nav_msgs/msg/OccupancyGrid"
 ODOMETRY, JOINTS = "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState"
+# What a measurement is of, and from which side, as the words of its topic say.
+_KINDS: dict[str, dict[str, str]] = {}
+for (_of, *_same), _ in ROWS["kinds of sources"]:
+    _KINDS.setdefault(_of, {}).update(dict.fromkeys(_same, _same[0]))
+_WHEELS, _GPS = "wheel", "gps"
 # What is sent to joints, as Isaac Sim and topic_based_ros2_control have it, is no state of them.
 _TO_JOINTS = ("cmd", "command", "goal", "target", "desired", "reference")
 JOYSTICK = "sensor_msgs/msg/Joy"
+_STOPS = lazy_compile("stop|halt|lock|pause|emergency")
 DESCRIPTION, _TEXT = "robot_description", "std_msgs/msg/String"
 # The node of `ros2 bag play`.
 CHANGE_STATE, NODE_NAMES = "/change_state", "node_names"
@@ -76,6 +89,23 @@ def kind_of_data(name: str, type_: str) -> str:
     return KINDS_OF_DATA.get(type_, type_) if sensor or type_ == ODOMETRY else ""
 
 
+def is_of_other_kind(wanted: str, offered: str, sender: str, type_: str) -> bool:
+    """Return whether topics are of two sources or places: odometry of wheels and of a GPS."""
+    for kinds in _KINDS.values():
+        mine, other = _kinds_in(kinds, wanted), _kinds_in(kinds, offered)
+        other = other or _kinds_in(kinds, last_word(sender))
+        if type_ == ODOMETRY and _WHEELS in kinds.values():
+            # A name that says nothing is that of a drive; its reader takes any but that of a GPS.
+            mine, other = mine or ({*kinds.values()} - {_GPS}), other or {_WHEELS}
+        if mine and other and mine.isdisjoint(other):
+            return True
+    return False
+
+
+def _kinds_in(kinds: Mapping[str, str], name: str) -> set[str]:
+    return {kinds[it] for it in re.split("[/_]", name) if it in kinds}
+
+
 def is_description(name: str, type_: str) -> bool:
     """Return whether a topic is that of a robot's description."""
     return type_ == _TEXT and name.endswith(("description", "urdf"))
@@ -95,6 +125,12 @@ def is_of_one_robot(plain: str, type_: str) -> bool:
     """Return whether a topic is one robot's: sensors, odometry, maps, commands, a description."""
     sensors = type_.startswith(_OF_ONE_ROBOT)
     return sensors or moves(plain, type_) or plain.endswith(DESCRIPTION)
+
+
+def is_never_shared(plain: str, type_: str) -> bool:
+    """Return whether one robot's topic may not be that of others: of its body, its orders, its stop."""
+    own = is_of_a_body(type_) or is_order(plain, type_) or type_ == JOYSTICK
+    return own or plain.endswith(DESCRIPTION) or bool(_STOPS.search(last_word(plain)))
 
 
 def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:

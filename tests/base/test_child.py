@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
 import subprocess
 from pathlib import Path
@@ -10,6 +12,7 @@ from pathlib import Path
 import pytest
 from paths import ROOT
 
+from multibot_rewrite.base.child import isolated, python
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.lint.config.changed import changed_since
 
@@ -23,6 +26,14 @@ def test_nobody_else_says_how_a_child_of_python_begins() -> None:
     others = [path for path in PACKAGE.rglob("*.py") if path != ONLY]
     said = re.compile(r"\[\s*sys\.executable|\(\s*sys\.executable|\"git\"")
     assert [str(path) for path in others if said.search(path.read_text())] == []
+
+
+def test_children_run_without_the_garbage_collector(tmp_path: Path) -> None:
+    (tmp_path / "short.py").write_text("import gc\nmain = lambda: print(gc.isenabled())\nmain()\n")
+    environ = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    for command in (python("short"), [*isolated("short")[:-1], json.dumps([str(tmp_path)])]):
+        said = subprocess.run(command, env=environ, capture_output=True, text=True, check=True)
+        assert set(said.stdout.split()) == {"False"}
 
 
 def test_git_runs_no_program_of_a_repository(

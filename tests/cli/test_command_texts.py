@@ -459,7 +459,9 @@ def test_headings_and_names_are_painted() -> None:
         (["a", "b"], "unexpected b"),
         # A part of it says what it is, another first letter of a short one does not.
         (["--form", "b"], "unknown option --form; use --output-kind KIND"),
-        (["--stack", "b"], "unknown option --stack; use --node-set NAME"),
+        (["--stack", "b"],
+         "unknown option --stack; --node-set does that,"
+         " which multibot init, multibot plan, multibot rehearse and 1 more take"),
         (["--output-form", "b"], "unknown option --output-form; did you mean '--output-kind'?"),
         (["--norm"], "unknown option --norm"),
         # A short option, alone or with its value; what is no option is a value.

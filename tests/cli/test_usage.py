@@ -107,7 +107,7 @@ def test_a_live_graph_is_asked_for_with_what_the_options_say(
     first, second, watched, asking = (it for it, _ in asked)
     assert [it for _, it in asked] == ["3", "7", "3", "11,12"]
     assert (first.timeout, first.headers, first.watch) == (15.0, True, False)
-    assert (second.timeout, second.headers, watched.headers) == (2.0, True, False)
+    assert (second.timeout, second.headers, watched.headers) == (2.0, True, True)
     assert (watched.timeout, watched.watch, watched.asks) == (float("inf"), True, None)
     assert (asking.timeout, asking.asks) == (4.0, {"a": ["b"]})
 

@@ -78,3 +78,15 @@ def test_an_inserted_block_is_no_evidence_of_ros_2() -> None:
     assert "<ros>" in one.text
     assert "<robotNamespace>/robot1" in one.text
     assert strip(one.text, "robot1", layout="both").decode() == text
+
+
+def test_it_is_undone_where_its_package_is_not(tmp_path: Path) -> None:
+    """The package says that it is of ROS 2; the text alone is one of ROS 1."""
+    (tmp_path / "package.xml").write_text(
+        "<package><buildtool_depend>ament_cmake</buildtool_depend></package>"
+    )
+    file = tmp_path / "a.urdf"
+    file.write_text(f'<robot name="rover"><link name="base"/>\n{OF_ROS_1}{PLUGIN}</robot>')
+    made = rewrite(file, "robot1", layout="both").data
+    assert b"<ros>" in made and b"<ros>" not in rewrite(file.read_text(), "robot1").data
+    assert strip(made, "robot1", layout="both") == file.read_bytes()

@@ -109,6 +109,30 @@ def test_a_command_is_started_for_each_robot(
     assert "2 other processes started as they are" in said
 
 
+PACKAGE = "<package><name>own</name></package>"
+SCRIPT_BY = (
+    "lib('own'), '/lib/own/a.py'",
+    "share('own'), '/../../lib/own/a.py'",
+    "run('a.py', 'own')",
+)
+
+
+@pytest.mark.parametrize("found", SCRIPT_BY)
+def test_a_program_of_a_package_that_is_not_built_is_found_when_it_starts(
+    found: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where it is installed is known then: its package is here as sources alone."""
+    (tmp_path / "package.xml").write_text(PACKAGE)
+    setup = "from launch_ros.substitutions import ExecutableInPackage as run, FindPackagePrefix as "
+    setup += "lib, FindPackageShare as share"
+    body = f"ExecuteProcess(cmd=['python3', [{found}], '9']),"
+    every = [it.values for it in actions(tmp_path, body, setup) if it.kind == "ExecuteProcess"]
+    assert [it["cmd"] for it in every] == [["python3", "/own/lib/own/a.py", "9"]]
+    said = capsys.readouterr().err
+    assert "process a.py (python3, " in said
+    assert "MF823 " not in said.replace("MF823 launch is not installed here", "")
+
+
 def test_a_command_runs_once_where_the_fleet_file_says_so(tmp_path: Path) -> None:
     body = "ExecuteProcess(cmd=['MicroXRCEAgent']), ExecuteProcess(cmd=['ros2', 'bag', 'record']),"
     found = told(actions(tmp_path, body, given={"robots": "2"}))
@@ -1028,13 +1052,19 @@ def test_move_group_has_what_its_launch_file_and_its_files_say_of_pipelines(tmp_
     (tmp_path / "arm.srdf").write_text(srdf)
     (tmp_path / "kinematics.yaml").write_text("g: {kinematics_solver: k/K}\n")
     body = f"""Node(package='moveit_ros_move_group', executable='move_group', name='move_group',
-        parameters=['{tmp_path}/pipes.yaml', {{'ompl.planning_plugin': 'mine/Two'}}]),"""
+        parameters=['{tmp_path}/pipes.yaml', {{'ompl.planning_plugin': 'mine/Two'}}]),
+        Node(package='rviz2', executable='rviz2', parameters=[
+            {{'pilz.planning_plugins': 'a/B', 'robot_description_kinematics.g.x': 1}}]),"""
     more = "simulator: none\nsrdf: arm.srdf\nrelated_files: {moveit: [kinematics.yaml]}"
-    told = of(actions(tmp_path, body, more=more), "move_group")["parameters"]
+    found = actions(tmp_path, body, more=more)
+    told = of(found, "move_group")["parameters"]
     files = [Path(it).name for it in told if isinstance(it, str)]
     assert files.index("moveit_parameters.yaml") < files.index("pipes.yaml")
     rows = [at for at, it in enumerate(told) if "ompl.planning_plugin" in it]
     assert rows[-1] > max(at for at, it in enumerate(told) if isinstance(it, str))
+    # A window for one robot has them as well; names of joints are those of its own files.
+    made, own, *_ = of(found, "rviz2")["parameters"]
+    assert made.endswith("moveit_parameters.yaml") and own == {"pilz.planning_plugins": "a/B"}
 
 
 @pytest.mark.parametrize(

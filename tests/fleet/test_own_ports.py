@@ -72,6 +72,12 @@ OF_WIRE = '<param name="network_interface">eth0</param>'
         (HARDWARE.format(UNITREE, ""), ".//param[@name='domain']", [None, "2", "3"]),
         (HARDWARE.format(UNITREE, OF_LO), ".//param[@name='domain']", ["7", "8", "9"]),
         (HARDWARE.format(UNITREE, OF_WIRE), ".//param[@name='domain']", None),
+        # PX4's mavlink_interface.cpp opens the serial port in place of the others.
+        (
+            MODEL.format(MAVLINK.format("<serialEnabled>1</serialEnabled>")),
+            ".//mavlink_udp_port",
+            None,
+        ),
         (
             HARDWARE.format(KUKA, KUKA_PORT),
             ".//param[@name='client_port']",

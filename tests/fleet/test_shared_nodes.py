@@ -101,3 +101,76 @@ def test_a_map_server_without_a_map_is_told(
     (tmp_path / "fleet.yaml").write_text(text)
     found = make_outputs(planned_fleet(tmp_path / "fleet.yaml")).findings
     assert [it.level for it in found if it.code == "MF857"] == ["note"] * is_told
+
+
+ROBOT = """<robot name="bot"><link name="base_link"/><gazebo><plugin
+ filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
+ <odom_topic>odom</odom_topic></plugin></gazebo></robot>"""
+OF_MODEL = (
+    '<model name="{}"><link name="l"><sensor name="s" type="camera">{}</sensor></link></model>'
+)
+ROW = "- {{topic_name: {}, ros_type_name: {}, gz_type_name: a.B, direction: GZ_TO_ROS}}\n".format
+ENDS = {"/model/box/pose": "geometry_msgs/msg/Pose", "/above/image": "sensor_msgs/msg/Image",
+        "/found": "acme/msg/Found", "/model/bot/pose": "geometry_msgs/msg/Pose"}  # fmt: skip
+
+
+OWN = "nodes: nodes.yaml\nrelated_files: {bridge: [rows.yaml]}"
+
+
+def shared_of(folder: Path, **files: str) -> tuple[set[str], str]:
+    """Return what robots' nodes subscribe to, and the bridge of all, in a fleet with these files."""
+    reads = "".join(f"      {name}: {type_}\n" for name, type_ in ENDS.items())
+    nodes = f"nodes:\n  finder: {{package: acme, publishes: {{found: {ENDS['/found']}, cmd_vel: "
+    nodes += "geometry_msgs/msg/Twist}}\n  follow:\n    package: acme\n    subscribes:\n"
+    nodes += f"{reads}      cmd_vel: geometry_msgs/msg/Twist\n"
+    nodes += "node_sets: {acme: {nodes: [finder, follow]}}\n"
+    for name, text in {"bot.urdf": ROBOT, "nodes.yaml": nodes, **files}.items():
+        (folder / name).write_text(text)
+    plan = planned_fleet(folder / "fleet.yaml")
+    read = {
+        it.name
+        for it in expected(plan.fleet).ends
+        if {"follow", "robot1"} <= {*it.node.replace("_", "/").split("/")}
+    }
+    made = {it.path: it.data.decode() for it in make_outputs(plan).files}
+    return read, made.get("bridge.yaml", "")
+
+
+@pytest.mark.parametrize("layout", LAYOUTS[::3])
+def test_what_is_given_once_is_shared_and_what_is_the_robots_is_not(
+    layout: str, tmp_path: Path
+) -> None:
+    """Neither an order of one node for all, nor a topic of the model that is the robot."""
+    box, above = OF_MODEL.format("box", ""), OF_MODEL.format("eye", "<topic>above/image</topic>")
+    bot = OF_MODEL.format("bot", "<topic>odom</topic>")
+    fleet = FLEET.format(layout=layout, rover="bot.urdf", shared="finder")
+    fleet = fleet.replace("nav2", f"acme\nsimulator: gazebo\nsimulator_world: w.sdf\n{OWN}")
+    rows = "".join(ROW(name, type_) for name, type_ in ENDS.items() if name != "/found")
+    world = f"<sdf version='1.9'><world name='w'>{box}{above}{bot}</world></sdf>"
+    files = {"fleet.yaml": fleet, "w.sdf": world, "rows.yaml": rows}
+    read, bridge = shared_of(tmp_path, **files)
+    once = {"/model/box/pose", "/above/image", "/found"}
+    assert {it for it in read if "robot1" not in it} == once
+    assert {it.replace("/robot1", "").replace("_robot1", "") for it in read} == {*ENDS, "/cmd_vel"}
+    assert all(it in bridge for it in once - {"/found"}) and "bot" not in bridge
+
+
+def test_what_plugins_of_a_classic_world_send_is_shared(tmp_path: Path) -> None:
+    """gazebo_plugins gazebo_ros_p3d.cpp sends odom; the robot's own model in the world is spawned."""
+    p3d = (
+        "<model name='{0}'><link name='l'/><plugin name='p3d' filename='libgazebo_ros_p3d.so'><ros>"
+        "<namespace>/model/{0}</namespace><remapping>odom:=pose</remapping></ros></plugin></model>"
+    ).format
+    world = f"<sdf version='1.6'><world name='w'>{p3d('box')}{p3d('bot')}</world></sdf>"
+    start = "Node(package='acme', executable='follow', name='follow')"
+    launch = (
+        "from launch import LaunchDescription\nfrom launch.actions import ExecuteProcess\n"
+        "from launch_ros.actions import Node\ndef generate_launch_description():\n    return "
+        f"LaunchDescription([ExecuteProcess(cmd=['gzserver', '{tmp_path / 'w.world'}']), {start}])\n"
+    )
+    fleet = FLEET.format(layout="both", rover="bot.urdf", shared="[]").replace("jazzy", "humble")
+    fleet = fleet.replace("nav2", f"acme\nsimulator: gazebo\nlaunch: go.launch.py\n{OWN}")
+    rows = ROW("/x", "std_msgs/msg/Empty")
+    files = {"fleet.yaml": fleet, "w.world": world, "go.launch.py": launch, "rows.yaml": rows}
+    read, _ = shared_of(tmp_path, **files)
+    assert {it for it in read if not it.startswith("/robot1/")} == {"/model/box/pose"}

@@ -199,7 +199,9 @@ structure:
     ("layout", "prefix", "told"),
     [
         ("tf-per-robot", "robot1/", True),
-        ("frames-per-robot", "robot1/", True),
+        # Its frames are called so.
+        ("frames-per-robot", "robot1/", False),
+        ("frames-per-robot", "other/", True),
         # turtlebot3_state_publisher.launch.py without its argument; tf2 strips the slash.
         ("frames-per-robot", "/", False),
         ("frame-prefix", "robot1/", False),

@@ -238,3 +238,64 @@ def test_what_a_simulator_does_without(body: str, levels: list[str], tmp_path: P
     file = tmp_path / "in.urdf"
     file.write_text(f'<robot name="r">{ROBOT}{body}</robot>')
     assert [it.level for one in asked for it in lint_file(str(file), one)] == levels
+
+
+TWO = '<link name="base"><collision/><collision/></link><link name="bumper"><collision/></link>'
+BUMPER = TWO + JOINT.format("j", "fixed", "base", "bumper", "")
+TOUCH = "<contact><collision>{}</collision></contact>"
+LUMPED = "base_fixed_joint_lump__bumper_collision_2"
+KEEP = BLOCK.format("j", "<preserveFixedJoint>true</preserveFixedJoint>")
+SDF = (
+    '<sdf version="1.9"><model name="m"><link name="a"><collision name="c"/>{}</link>'
+    '<link name="b"><collision name="d"/></link></model></sdf>'
+)
+GZ = '<gazebo><plugin filename="gz-sim-{}-system" name="gz::sim::systems::{}">{}</plugin></gazebo>'
+TOUCHED = GZ.format("touchplugin", "TouchPlugin", "<target>w</target><collision>{}</collision>")
+MEASURES = CONTROL.format(
+    '<hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware><sensor name="{}"/>'
+)
+IMU = BLOCK.format("tip", SENSOR.format("imu", "")) + ROBOT
+ARDUPILOT = PLUGIN.format("ArduPilotPlugin", "<imuName>{}</imuName>")
+
+
+def _contact(body: str) -> str:
+    return SENSOR.format("s", body).replace('"imu"', '"contact"')
+
+
+@pytest.mark.parametrize(
+    ("body", "hint"),
+    [
+        # sdformat parser_urdf.cc: CreateCollisions counts, CreateCollision says where a link was.
+        *((BLOCK.format("bumper", _contact(TOUCH.format(it))) + BUMPER, hint) for it, hint in (
+            ("base_collision", None), ("base_collision_1", None), (LUMPED, None),
+            ("bumper_collision", f"write {LUMPED!r}"), (f"base::{LUMPED}", f"write {LUMPED!r}"),
+            ("__default__", f"write {LUMPED!r}"),
+        )),
+        (BLOCK.format("bumper", _contact(TOUCH.format("bumper_collision")) * 2) + BUMPER + KEEP, None),
+        (BLOCK.format("base", _contact(TOUCH.format("base"))) + BUMPER,
+         "write 'base_collision' or 'base_collision_1'"),
+        (BLOCK.format("base", _contact("")) + BUMPER, "write 'base_collision' or 'base_collision_1'"),
+        (BLOCK.format("tip", _contact(TOUCH.format("tip_collision"))) + ROBOT,
+         "give its link a <collision>"),
+        # A part of a robot, and a block of nobody.
+        (BLOCK.format("bumper", _contact(TOUCH.format("x"))), None),
+        (BLOCK.format("tipp", _contact(TOUCH.format("x"))) + BUMPER, None),
+        # gz-sim Contact.cc: a child of the sensor's link, by its own name.
+        (SDF.format(_contact(TOUCH.format("c"))), None),
+        (SDF.format(_contact(TOUCH.format("d"))), "write 'c'"),
+        (TOUCHED.format("base_collision_1") + BUMPER, None),
+        (TOUCHED.format(f"m::base::{LUMPED}") + BUMPER, None),
+        (TOUCHED.format("base_colision_1") + BUMPER, "did you mean 'base_collision_1'?"),
+        # gz_system.cpp registerSensors: by the name of the simulated one.
+        (MEASURES.format("imu") + IMU, None),
+        (MEASURES.format("imuu") + IMU, "did you mean 'imu'?"),
+        (MEASURES.format("imuu").replace("gz_ros2_control", "b") + IMU, None),
+        (ARDUPILOT.format("tip::imu") + IMU, None),
+        (ARDUPILOT.format("r::tip::imuu") + IMU, "did you mean 'imu'?"),
+    ],
+)  # fmt: skip
+def test_parts_that_nothing_has(body: str, hint: str | None, tmp_path: Path) -> None:
+    file = tmp_path / ("in.sdf" if body.startswith("<sdf") else "in.urdf")
+    file.write_text(body if body.startswith("<sdf") else f'<robot name="r">{body}</robot>')
+    found = [(it.level, it.hint) for it in lint_file(str(file), Settings(select=("MB246",)))]
+    assert found == ([] if hint is None else [("warning", hint)])

@@ -147,8 +147,8 @@ def test_a_name_that_was_moved_is_found_at_its_node(fleet: Fleet, data: st.DataO
     found = check(fleet.plan, sent(fleet.graph._replace(ends=moved)))
     if (*end[:3], new) in planned:
         return
-    assert end[0] in {finding.node for finding in found}
-    assert any(end[3] in finding.message for finding in found)
+    # The one that misses it may be the finding's node.
+    assert any(end[0] in str(it) and end[3] in str(it) for it in found)
 
 
 @settings(max_examples=25, deadline=None)

@@ -66,9 +66,9 @@ class Watch:
 
 
 @contextmanager
-def watching(plan: Path, own: int, *more: str) -> Iterator[Watch]:
+def watching(plan: Path | None, own: int, *more: str) -> Iterator[Watch]:
     process = subprocess.Popen(
-        [*CHECK, str(plan), "--watch", *more],
+        [*CHECK, *[str(plan)] * bool(plan), "--watch", *more],
         env=live_fleet.environ(own),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -121,6 +121,34 @@ def test_a_parameter_that_changes_is_seen_although_the_graph_does_not(plan: Path
         assert "as planned" in watch.until("2 robots", 60)
         code, said = watch.end()
     assert code == 1, said
+
+
+@pytest.mark.deep
+def test_a_sensor_that_falls_silent_is_seen_although_the_graph_does_not_change() -> None:
+    own, kinds = domain(75), {"scan": "LaserScan", "imu": "Imu"}
+    sensors = [
+        [{"name": it, "namespace": robot, "headers": [[it, f"sensor_msgs/msg/{kind}", it]]}]
+        for robot in ("robot1", "robot2")
+        for it, kind in kinds.items()
+    ]
+    topics = [[it, f"sensor_msgs/msg/{kind}"] for it, kind in kinds.items()]
+    pilots = [
+        [{"name": "pilot", "namespace": robot, "subscriptions": topics}]
+        for robot in ("robot1", "robot2")
+    ]
+    with (
+        live_fleet.running(own, *sensors, *pilots) as (_, _, lidar, *_),
+        watching(None, own) as watch,
+    ):
+        watch.until("2 robots, 3 nodes each; 0 findings: nothing wrong seen", 60)
+        lidar.send_signal(signal.SIGSTOP)
+        found = watch.until(
+            "  + /robot2/scan: error: MG326 publishes /robot2/scan, on which no", 60
+        )
+        assert "/robot1/scan has some" in found
+        lidar.send_signal(signal.SIGCONT)
+        watch.until("2 robots, 3 nodes each; 0 findings: nothing wrong seen", 60)
+        assert watch.end()[0] == 1
 
 
 @pytest.mark.deep

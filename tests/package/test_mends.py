@@ -68,7 +68,7 @@ ROWS = (
         "urdf-lint rover.urdf", "keep one", (("rover.urdf", BLOCKS.splitlines(True)[1], ""),)),
     Row("MB238", (GZ,),
         (("rover_gz.urdf", f'{COMMAND}"velocity"', f'{COMMAND}"acceleration"'),),
-        "urdf-lint rover_gz.urdf", "it knows position, velocity, effort",
+        "urdf-lint rover_gz.urdf", "use one of position, velocity, effort",
         (("rover_gz.urdf", '"acceleration"', '"velocity"'),)),
     Row("MB401", (ROVER,),
         (("rover.urdf", "<left_joint>", f"<ros>{RULE % 'cmd_vel:=/cmd_vel'}</ros><left_joint>"),),

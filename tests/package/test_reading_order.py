@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import live_commands
@@ -34,6 +35,8 @@ def test_every_page_works_behind_those_before_it(tmp_path: Path, tf2: dict[str, 
         if not line.startswith(page_commands.LIVE):
             ran = there.run(line)
             assert ran.returncode != 2, f"{line}\n{ran.stdout}"
+    # The README works in a folder of its own.
+    shutil.copy(ROOT / "examples/launch_tutorial/rover.urdf", tmp_path)
     for name in PAGES:
         done = list(page_commands.steps((ROOT / name).read_text(), there))
         assert done, name

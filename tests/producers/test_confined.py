@@ -120,6 +120,14 @@ def test_a_launch_file_sees_nothing_of_a_machine(
     assert not read(file, trust=True).notes
 
 
+def test_a_device_in_a_parameter_is_not_looked_at(kept: Path) -> None:
+    """Whether a parameter's text is a file that is there is asked by the reader, not by the file."""
+    file = kept / "own/a.launch.py"
+    node = 'parameters=[{"serial_port": "/dev/ttyUSB0"}], arguments=["-file", "/dev/ttyUSB0"])'
+    file.write_text(ASKS.replace("executable=repr(LINE))", f'executable="e", {node}'))
+    assert not read(file).notes
+
+
 def test_a_launch_file_waits_for_nothing(kept: Path) -> None:
     """What it would wait for is not started; where it may start it, it waits."""
     file = kept / "own/a.launch.py"

@@ -73,6 +73,18 @@ def test_a_port_in_use_is_a_participant(
     assert participants_here(domain_in_use) == 1
 
 
+def test_where_any_program_gets_a_port_one_alone_is_no_participant(
+    domain_in_use: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    port = 7400 + 250 * domain_in_use + 10
+    (tmp_path / "range").write_text(f"{port}\t60999\n")
+    monkeypatch.setattr(participants, "ANYBODYS", str(tmp_path / "range"))
+    assert participants_here(domain_in_use) == 0
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as data:
+        data.bind(("127.0.0.1", port + 1))
+        assert participants_here(domain_in_use) == 1
+
+
 def test_what_a_full_buffer_loses_is_counted(domain_in_use: int) -> None:
     before = lost_here(domain_in_use + 1)
     assert lost_here(domain_in_use) == 0

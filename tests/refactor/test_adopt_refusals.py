@@ -20,7 +20,7 @@ def robot(inside: str, name: str = ' name="r"') -> str:
 
 
 TAKEN = "".join(
-    f'<xacro:property name="{it}" value="x"/>'
+    f'<xacro:arg name="{it}" default="x"/>'
     for it in ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
 )
 # The files of a package -> what the line says, of what and what to do.

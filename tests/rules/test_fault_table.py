@@ -30,6 +30,7 @@ from paths import ROOT
 from vendor_graphs import RELEASES, VENDORS
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING
+from multibot_rewrite.base.findings.selection import grouped as by_robots
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.producers.bags.read import RecordedTopic
 from multibot_rewrite.producers.bags.recording import as_snapshot
@@ -118,8 +119,13 @@ def test_every_finding_says_what_it_is_about() -> None:
         after = fault.change(before)
         found = diagnose(after).findings
         codes = {it.code for it in found}
+        plan = seen_plan(diagnose(before))
         # What a finding explains is no change of its own.
-        changed = check(seen_plan(diagnose(before)), after, before=before)
+        changed = check(plan, after, before=before)
+        names = {it.name: it.name for it in plan.robots}
+        alone, *others = (len(by_robots(it, names)) for it in (found, check(plan, after), changed))
+        # With a plan one cause is no more lines than without.
+        assert 0 < min(others) <= max(others) <= max(1, alone), fault.name
         assert changed and "MG130" not in {it.code for it in changed}, fault.name
         assert {fault.code} <= codes <= {fault.code, *fault.also}, fault.name
         for it in found:

@@ -5,7 +5,7 @@ the finding is gone, and nothing else is wrong. A hint that names one has it as 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 
 import pytest
@@ -16,88 +16,104 @@ from graph_faults import FAULTS, Fault
 from healthy_systems import nav2_with_tools
 from patches import patched
 from paths import FIXTURES
-from told_faults import by_check, by_doctor, faults
+from told_faults import Told, by_check, by_doctor, faults
 
 from multibot_rewrite.base.conventions import STAMP_SWITCHES, TF_SWITCHES, switches
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.check import check, judge
-from multibot_rewrite.rules.system.differing import COMPARED
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import Node, System
 from tools.interfaces.table import read_packed
 
-CODE = re.compile(r"\bMG\d{3}\b")
 TWIST, SCAN = "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"
 
 
-def about(found: Iterable[Finding]) -> set[tuple[str, str, str]]:
-    return {(it.code, it.robot, it.node) for it in found}
+Ask = Callable[[System, str], Sequence[Finding]]
 
 
-def news(after: Iterable[Finding], before: Iterable[Finding]) -> list[str]:
-    """Return what is found that was not found before. What robots held against each other show
-    is left to any other finding: it was there, and the mended robot may be made otherwise than
-    the others. What came of another finding was found with that one."""
-    known, below = (
-        about(before),
-        {(it.robot, code) for it in before for code in CODE.findall(it.hint)},
-    )
-    return [
-        str(it)
-        for it in after
-        if (it.code, it.robot, it.node) not in known
-        and it.code not in COMPARED
-        and below.isdisjoint(((it.robot, it.code), ("", it.code)))
-    ]
+def about(it: Finding) -> tuple[str, str, str]:
+    return it.code, it.robot, it.node
 
 
-def explained(found: Iterable[Finding]) -> set[tuple[str, str]]:
-    """Robot and code of what comes of these findings, as their hints say."""
-    return {(it.robot, code) for it in found for code in CODE.findall(it.hint)}
+def alone(_: System) -> Ask:
+    return lambda graph, hint: diagnose(graph).findings
 
 
-NAMED = [(it, diagnose(it.change(it.system())).findings) for it in FAULTS]
-NAMED = [(it, found) for it, found in NAMED if any(one.remaps for one in found)]
+def by_plan(healthy: System) -> Ask:
+    """With the plan of a healthy system. Nodes that are not in it are added where the hint says so."""
+    plan = seen_plan(diagnose(healthy))
+
+    def ask(graph: System, hint: str) -> Sequence[Finding]:
+        own = {it.name for it in plan.nodes}
+        new = {it.name for it in graph.nodes if "not in the plan" in hint} - own
+        robots = [it.name for it in plan.robots]
+        nodes = (Node(it, next((one for one in robots if one in it.split("/")), "")) for it in new)
+        ends = (it for it in graph.ends if it.node in new)
+        return check(plan._replace(nodes=(*plan.nodes, *nodes), ends=(*plan.ends, *ends)), graph)
+
+    return ask
+
+
+def followed(it: Finding, graph: System, healthy: System) -> System:
+    """Return the system after a hint was followed: who gets a name back sends what it sent by it."""
+    mended = patched(graph, it.remaps, it.settings)
+    there, nodes = {one[:3] for one in graph.edges}, {one.node for one in it.remaps}
+    back = (one for one in healthy.edges if one[:3] not in there and nodes & {*one.publishers})
+    return mended._replace(edges=(*mended.edges, *back))
+
+
+def is_patch(it: Finding) -> bool:
+    return bool(it.remaps or it.settings)
+
+
+def mends(graph: System, healthy: System, ask: Ask) -> None:
+    """Each finding with a patch is gone after it, and no other has come."""
+    found = ask(graph, "")
+    for it in filter(is_patch, found):
+        after = ask(followed(it, graph, healthy), it.hint)
+        known = {about(one) for one in found} - {about(it)}
+        assert [f"{one} {one.hint}" for one in after if about(one) not in known] == [], it
+        targets = {(rule.node, rule.old) for rule in it.remaps}
+        assert len(targets) == len({*it.remaps}), "two rules for one name of a node"
+
+
+@cache
+def told(fault: Fault, kind: Callable[[System], Ask]) -> Sequence[Finding]:
+    healthy = fault.system()
+    return kind(healthy)(fault.change(healthy), "")
 
 
 def test_many_faults_have_such_a_hint() -> None:
-    assert len(NAMED) > 40
-    codes = {one.code for _, found in NAMED for one in found if one.remaps}
+    found = [one for it in FAULTS for one in told(it, alone)]
+    codes = {it.code for it in found if it.remaps}
     assert codes >= {"MG303", "MG304", "MG308", "MG310", "MG315", "MG320", "MG402", "MG405"}
-
-
-@pytest.mark.parametrize(("fault", "found"), NAMED, ids=[it.name for it, _ in NAMED])
-def test_rules_of_a_hint_mend_the_fault(fault: Fault, found: tuple[Finding, ...]) -> None:
-    graph = fault.change(fault.system())
+    assert {it.code for it in found if it.settings} >= {"MG411", "MG412", "MG503"}
+    assert sum(map(is_patch, found)) > 70
+    planned = [one for it in FAULTS for one in told(it, by_plan) if is_patch(one)]
+    assert len(planned) > 60 and any("by the plan" in it.hint for it in planned)
     for it in found:
-        if not it.remaps:
-            continue
-        for rule in it.remaps:
-            assert rule.old.rpartition("/")[2] in it.hint, "the hint does not say it"
-        after = diagnose(patched(graph, it.remaps, ())).findings
-        assert (it.code, it.robot, it.node) not in about(after), it
-        assert news(after, found) == [], it
-
-
-SET = [(it, diagnose(it.change(it.system())).findings) for it in FAULTS]
-SET = [(it, found) for it, found in SET if any(one.settings for one in found)]
-
-
-def test_faults_of_clocks_and_frames_have_such_a_hint() -> None:
-    codes = {one.code for _, found in SET for one in found if one.settings}
-    assert codes >= {"MG411", "MG412", "MG503"}
-
-
-@pytest.mark.parametrize(("fault", "found"), SET, ids=[it.name for it, _ in SET])
-def test_values_of_a_hint_mend_the_fault(fault: Fault, found: tuple[Finding, ...]) -> None:
-    graph = fault.change(fault.system())
-    for it in (one for one in found if one.settings):
+        assert all(rule.old.rpartition("/")[2] in it.hint for rule in it.remaps), "not in the hint"
         # Of a list it says which to leave out.
-        said = (one.value in it.hint for one in it.settings if not one.value.startswith("["))
-        assert all(said), "the hint does not say it"
+        values = (one for one in it.settings if not one.value.startswith("["))
+        assert all(one.value in it.hint for one in values), "not in the hint"
         assert all(one.name in it.hint or one.topic for one in it.settings), "nor the name"
-        after = diagnose(patched(graph, (), it.settings)).findings
-        assert (it.code, it.robot, it.node) not in about(after), it
-        assert news(after, found) == [], it
+
+
+BOTH_WAYS = pytest.mark.parametrize("kind", [alone, by_plan])
+
+
+@BOTH_WAYS
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.name)
+def test_a_hint_mends_the_fault(fault: Fault, kind: Callable[[System], Ask]) -> None:
+    healthy = fault.system()
+    mends(fault.change(healthy), healthy, kind(healthy))
+
+
+@pytest.mark.more
+@pytest.mark.sample(16)
+@BOTH_WAYS
+@pytest.mark.parametrize("fault", faults(), ids=lambda fault: fault.name)
+def test_a_hint_mends_the_fault_in_words(fault: Told, kind: Callable[[System], Ask]) -> None:
+    mends(fault.faulty(), fault.healthy(), kind(fault.healthy()))
 
 
 LAYOUTS = {nav: "L1", shared_tf: "L2"}
@@ -106,56 +122,17 @@ OLDER_AND_NEWER = ("humble", "kilted", "lyrical", "rolling")
 
 @pytest.mark.more
 @pytest.mark.sample(16)
+@BOTH_WAYS
 @pytest.mark.parametrize("release", OLDER_AND_NEWER)
 @pytest.mark.parametrize(
     "fault", [it for it in FAULTS if it.system in LAYOUTS], ids=lambda fault: fault.name
 )
-def test_a_hint_mends_the_fault_in_each_release(fault: Fault, release: str) -> None:
-    """Other releases have other nodes and topics beside the fault."""
-    graph = fault.change(nav2_with_tools(LAYOUTS[fault.system], release))
-    found = diagnose(graph).findings
-    for it in (one for one in found if one.remaps or one.settings):
-        after = diagnose(patched(graph, it.remaps, it.settings)).findings
-        assert (it.code, it.robot, it.node) not in about(after), it
-        assert news(after, found) == [], it
-
-
-PLANS = [
-    (it, plan, check(plan, it.change(it.system())))
-    for it in FAULTS
-    for plan in [seen_plan(diagnose(it.system()))]
-]
-PLANNED = [row for row in PLANS if any(one.remaps or one.settings for one in row[2])]
-
-
-def test_many_faults_have_such_a_hint_by_their_plan() -> None:
-    assert len(PLANNED) > 30
-    assert any("by the plan" in one.hint for *_, found in PLANNED for one in found if one.remaps)
-
-
-@pytest.mark.parametrize(("fault", "plan", "found"), PLANNED, ids=[it.name for it, *_ in PLANNED])
-def test_rules_of_a_hint_by_the_plan_mend_the_fault(
-    fault: Fault, plan: System, found: list[Finding]
+def test_a_hint_mends_the_fault_in_each_release(
+    fault: Fault, release: str, kind: Callable[[System], Ask]
 ) -> None:
-    """What two robots have alike is one finding to its reader, and its rules are given to both."""
-    graph = fault.change(fault.system())
-    for it in (one for one in found if one.remaps or one.settings):
-        alike = [one for one in found if one.code == it.code]
-        rules = [rule for one in alike for rule in one.remaps]
-        values = [value for one in alike for value in one.settings]
-        after = check(plan, patched(graph, rules, values))
-        assert (it.code, it.robot, it.node) not in about(after), it
-        # That its node is not planned is said with the fault until then. A node that serves all robots
-        # has no rule that would do, and a tool is a note.
-        missed = ("MG102", "MG303", "MG304")
-        all_robots = {one for one in about(after) if one[2].count("/") == 1 and one[0] in missed}
-        notes = about(one for one in after if one.level == "note")
-        new = {one for one in about(after) - about(found) if one[0] != "MG108"} - notes - all_robots
-        below = explained(found)
-        new = {one for one in new if below.isdisjoint(((one[1], one[0]), ("", one[0])))}
-        assert not new, [str(one) for one in after]
-        targets = {(rule.node, rule.old): rule.new for rule in it.remaps}
-        assert len(targets) == len({*it.remaps}), "two rules for one name of a node"
+    """Other releases have other nodes and topics beside the fault."""
+    healthy = nav2_with_tools(LAYOUTS[fault.system], release)
+    mends(fault.change(healthy), healthy, kind(healthy))
 
 
 # Of rules that stand in the plan, which is no part of the system.
@@ -196,12 +173,11 @@ def as_text(found: Iterable[Finding]) -> list[str]:
 @pytest.mark.more
 def test_what_a_hint_names_is_a_record() -> None:
     """Of all faults, without a plan and with one."""
-    told = [found for _, found in (*NAMED, *SET)] + [found for *_, found in PLANS]
-    told += [by_doctor(it.faulty()) for it in faults()]
-    told += [by_check(it.healthy(), it.faulty()) for it in faults()]
-    assert [it for found in told for it in as_text(found)] == []
-    records = sum(bool(it.remaps or it.settings) for found in told for it in found)
-    assert records > 220
+    every = [told(it, kind) for it in FAULTS for kind in (alone, by_plan)]
+    every += [by_doctor(it.faulty()) for it in faults()]
+    every += [by_check(it.healthy(), it.faulty()) for it in faults()]
+    assert [it for found in every for it in as_text(found)] == []
+    assert sum(is_patch(it) for found in every for it in found) > 210
 
 
 # The packages that declare what hints name, and the release from which on.
@@ -244,13 +220,9 @@ WITHOUT_PLAN = [
 @pytest.mark.parametrize("code", WITHOUT_PLAN)
 def test_the_example_of_a_rule_is_mended_by_its_records(code: str) -> None:
     seen = read_system(RULES[code].page.bad)
+    mends(seen.system, seen.system, lambda graph, _: judge(seen._replace(system=graph, memo={})))
     for it in judge(seen):
         assert not named_in(it) or it.remaps or it.settings or it.code in OF_THE_PLAN, it
-        if it.remaps or it.settings:
-            system = patched(seen.system, it.remaps, it.settings)
-            assert (it.code, it.node) not in {
-                (one.code, one.node) for one in judge(seen._replace(system=system, memo={}))
-            }, it
 
 
 def said(*lines: str) -> Iterator[tuple[str, str, bool]]:
@@ -304,3 +276,68 @@ def test_no_hint_goes_past_what_limits_velocities() -> None:
 )  # fmt: skip
 def test_who_has_to_change(lines: list[str], hint: str) -> None:
     assert [it for code, it, _ in said(*lines) if code == "MG320"] == [hint]
+
+
+ODOM, JOY = "nav_msgs/msg/Odometry", "sensor_msgs/msg/Joy"
+IMAGE, CLOUD = "sensor_msgs/msg/Image", "sensor_msgs/msg/PointCloud2"
+
+
+@pytest.mark.parametrize(
+    ("wanted", "offered", "type_", "is_joined"),
+    [
+        ("ekf_node wheel/odom", "navsat_transform odometry/gps", ODOM, False),
+        ("ekf_node wheel/odom", "diff_drive odom", ODOM, True),
+        ("ekf_node visual/odom", "diff_drive wheel/odom", ODOM, False),
+        ("navsat_transform odometry/filtered", "ekf_node odometry/global", ODOM, True),
+        ("navsat_transform odometry/filtered", "diff_drive odom", ODOM, False),
+        ("controller_server odom", "navsat_transform odometry/gps", ODOM, False),
+        ("controller_server odom", "ekf_node odometry/filtered", ODOM, True),
+        ("fusion odometry/global", "ekf_local odometry/local", ODOM, False),
+        ("amcl scan_front", "rear_lidar scan_rear", SCAN, False),
+        ("amcl scan", "front_lidar scan_front", SCAN, True),
+        ("stereo left/image_raw", "camera right/image_raw", IMAGE, False),
+        ("costmap camera/depth/points", "velodyne velodyne_points", CLOUD, False),
+        ("costmap points", "camera camera/depth/points", CLOUD, True),
+        ("navsat_transform gps/fix", "nmea_driver fix", "sensor_msgs/msg/NavSatFix", True),
+    ],
+)
+def test_no_rule_joins_two_sensors_or_places(
+    wanted: str, offered: str, type_: str, is_joined: bool
+) -> None:
+    (reader, name), (sender, other) = wanted.split(), offered.split()
+    for robot in ("", "/robot1"):
+        ((_, hint, is_patch),) = said(
+            f"{robot}/{reader} subscribes {robot}/{name} {type_}",
+            f"{robot}/{sender} publishes {robot}/{other} {type_}",
+        )
+        assert is_patch is is_joined and other in hint
+
+
+ONE_EACH = "{} sends it to all robots: start one for each, in its namespace"
+
+
+@pytest.mark.parametrize(
+    ("sender", "name", "type_", "more", "hint"),
+    [
+        ("/bridge", "model/box/pose", "geometry_msgs/msg/PoseStamped", "",
+         "pass the rule /robot1/model/box/pose:=/model/box/pose, or put /model/box/pose in"
+         " shared_topics of the fleet file"),
+        ("/panel", "e_stop", "std_msgs/msg/Bool", "", ONE_EACH.format("/panel")),
+        ("/lidar", "scan", SCAN, "", ONE_EACH.format("/lidar")),
+        ("/joy_node", "joy", JOY, "", ONE_EACH.format("/joy_node")),
+        ("/teleop", "cmd_vel", TWIST, "", ONE_EACH.format("/teleop")),
+        # robot2 has its own, so this is robot1's.
+        ("/lidar", "scan", SCAN, "/robot2/lidar publishes /robot2/scan",
+         "pass the rule /scan:=/robot1/scan to /lidar, or start it in the namespace"),
+        # Each has its own sender.
+        ("/robot1/finder", "model/box/pose", "geometry_msgs/msg/PoseStamped",
+         "/robot2/finder publishes /model/box/pose",
+         "pass the rule /model/box/pose:=/robot1/model/box/pose to /robot1/finder, or start it in the"
+         " namespace"),
+    ],
+)  # fmt: skip
+def test_what_is_everybodys_stays(sender: str, name: str, type_: str, more: str, hint: str) -> None:
+    lines = [f"{sender} publishes /{name} {type_}", *[f"{more} {type_}"] * bool(more)]
+    readers = (f"/robot{it}/node subscribes /robot{it}/{name} {type_}" for it in "12")
+    found = [it for code, it, _ in said(*readers, *lines) if code == "MG303"]
+    assert found[0] == hint

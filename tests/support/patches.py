@@ -207,7 +207,11 @@ def _managed(graph: System, it: Setting) -> System:
         return managed and one.role not in (PUBLISHES, SUBSCRIBES) and node not in kept
 
     served = {one for one in graph.ends if one.role == "serves"}
-    ends = (one for one in graph.ends if one in served or not asks(one))
+    asked = [one for one in graph.ends if one not in served and asks(one)]
+    ends = dict.fromkeys(one for one in graph.ends if one not in asked)
+    for node in kept:
+        new = (one._replace(name=f"{node}/{one.name.rpartition('/')[2]}") for one in asked)
+        ends.update(dict.fromkeys(new) if node in {it.name for it in graph.nodes} else {})
     return graph._replace(ends=tuple(ends))
 
 

@@ -16,9 +16,10 @@ from graph_cases import moved, qos, reframed, sent, without_node
 from healthy_systems import arms, single, slam_with_filters, with_ends, with_mux, with_node
 from node_answers import told
 from open_faults import heard_all_but
+from patches import remapped
 from paths import ROOT
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Remap
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import seen_plan
 from multibot_rewrite.rules.check import check
@@ -166,6 +167,7 @@ STEPS: Mapping[str, Callable[..., System]] = {
     "add": _add,
     "drop": without_node,
     "cut": _cut,
+    "space": lambda graph, node, space: remapped(graph, [Remap(node, "__ns", space)]),
     "name": lambda graph, old, new, node="": moved(graph, old, new, node),
     "tf": _tf,
     "cuttf": lambda graph, child, topic="": _edges(graph, child, topic),

@@ -16,11 +16,11 @@ from waiting import wait_until
 
 from tools.bringups import running
 from tools.bringups.__main__ import Made, Verdict, details, installed, is_named, table
-from tools.bringups.choose import Choice, chosen, launch_files
+from tools.bringups.choose import Choice, chosen, launch_files, unread, unstarted
 from tools.bringups.compare import Comparison, compare
 from tools.bringups.install import install
 from tools.bringups.reading import read
-from tools.bringups.running import Process, start
+from tools.bringups.running import Process, Ran, start
 from tools.strangers import strangers
 
 ROBOTS = ("robot1", "robot2")
@@ -301,6 +301,18 @@ def test_a_bringup_is_what_no_other_file_includes(tmp_path: Path) -> None:
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     assert list(launch_files(tmp_path)) == ["launch/all.launch.py"]
+
+
+def test_files_that_cannot_be_read_are_said_before_a_run() -> None:
+    robot = "<robot name='r'><link name='a'/><joint name='j'/></robot>"
+    publisher = Process("robot_state_publisher", "robot_state_publisher")
+    publisher = publisher._replace(parameters={"robot_description": robot})
+    base, inner = Process("acme", "base"), Process("nav2_bringup", "x.py", "include")
+    whole = Ran((publisher, base, inner), "")
+    assert (unstarted(whole), unread(whole, {"nav2_bringup"})) == ("", "")
+    assert unread(whole, {"acme"}) == "includes of nav2_bringup, in no release"
+    assert unread(Ran((base,), ""), ()) == "no robot of its own"
+    assert unstarted(Ran((base,), "")) == "fewer than three processes"
 
 
 def test_the_list_has_each_once_and_no_stranger() -> None:

@@ -26,7 +26,15 @@ from typing import NamedTuple
 
 import yaml
 
-from tools.bringups.choose import Choice, chosen, launch_files
+from tools.bringups.choose import (
+    Choice,
+    chosen,
+    launch_files,
+    released,
+    unfit,
+    unread,
+    unstarted,
+)
 from tools.bringups.compare import SHARED, SIMULATORS, Comparison, Match, compare
 from tools.bringups.install import copied, install, merge, packages
 from tools.bringups.reading import read
@@ -216,6 +224,20 @@ def details(verdict: Verdict) -> Iterator[str]:
         yield f"extra            {one} x{count}"
 
 
+def fits(checkout: Path, known: set[str], folder: Path) -> str:
+    """Return why a checkout is not taken into a set by ``bringups.tsv``, or its launch file."""
+    if why := unfit(checkout):
+        return f"no: {why}"
+    file = found_in(checkout, [checkout], folder)
+    if not file:
+        return "no: no launch file of it starts a process"
+    bringup = ran(checkout / file, (), [checkout], folder)
+    if why := unstarted(bringup):
+        return f"no: {why}"
+    why = unread(bringup, known)
+    return f"unread: {why}" if why else f"fits: {file}"
+
+
 def installed(sources: Iterable[Path], prefix: Path) -> Path:
     """Return a prefix with copies of the packages below some folders, as a sourced workspace has them;
     their Python modules are in its folder ``site``."""
@@ -253,7 +275,15 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument(
         "--list", action="store_true", help="list launch files that may be bringups"
     )
+    parser.add_argument("--fits", action="store_true", help="say which checkouts fit into a set")
+    parser.add_argument("--released", type=Path, help="the distribution.yaml of a release")
     given = parser.parse_args(words)
+    if given.fits:
+        known = released(given.released)
+        for it in sorted(it.resolve() for it in given.folder.iterdir()):
+            if any(part in it.name for part in given.only):
+                print(it.name, fits(it, known, (given.keep / it.name).resolve()), flush=True)
+        return 0
     prefix = installed(given.sources, given.keep / "installed")
     os.environ |= {"AMENT_PREFIX_PATH": str(prefix), "PYTHONPATH": str(prefix / "site")}
     verdicts = []

@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import runpy
 import sys
@@ -24,6 +25,7 @@ def safe_path(paths: list[str], here: str) -> list[str]:
 
 
 if __name__ == "__main__":
+    gc.disable()
     sys.path[:] = safe_path(sys.path, os.getcwd())
     del sys.argv[0]
     runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)

@@ -112,7 +112,9 @@ def shared_with(
     yield from found
     if not found and robot.encode() not in text:
         yield from _same_text(document, naming, definitions)
-    if all(document.root.find(it) is None for it in ("link", ".//model/link", ".//include")):
+    if all(
+        document.root.find(it) is None for it in ("link", "webots", ".//model/link", ".//include")
+    ):
         from multibot_rewrite.description.sources.included_by import robot_instead  # few ask for it
 
         hint = robot_instead(document.file)

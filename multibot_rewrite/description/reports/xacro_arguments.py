@@ -180,7 +180,7 @@ def declared_in(sources: Mapping[str, bytes]) -> dict[str, str]:
     # YAML that an expression loads may be among them.
     for file, data in ((file, data) for file, data in sources.items() if b"<" in data):
         for element in read_document(data, file).root.iter("{*}arg"):
-            if "xacro}" in str(element.tag):
+            if element.prefix == "xacro":
                 found.setdefault(element.get("name", ""), element.get("default", ""))
     return found
 

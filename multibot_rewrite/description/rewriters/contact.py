@@ -52,16 +52,19 @@ def _scopes(names: list[str], declared: Declared, respell: Respell) -> Iterator[
 
 def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
     """Return by old generated name the new one, for every collision of the description."""
+    new = collisions(root, respell)
+    old = collisions(root)
+    return {name: new[left][key] for left, names in old.items() for key, name in names.items()}
+
+
+def collisions(
+    root: etree._Element, respell: Respell = lambda kind, name: name
+) -> dict[str, dict[tuple[str, int], str]]:
+    """Return by each link that is left the names of its collisions, by their link and index."""
     links = {link.get("name", ""): link for link in root.iterchildren("link")}
     lumped = _lumped(root)
     merged_away = {child for children in lumped.values() for _, child in children}
-    result = {}
-    for left in links:
-        if left not in merged_away:
-            old = _names(left, links, lumped, lambda kind, name: name)
-            new = _names(left, links, lumped, respell)
-            result.update({old[key]: new[key] for key in old})
-    return result
+    return {it: _names(it, links, lumped, respell) for it in links if it not in merged_away}
 
 
 def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tuple[str, int], str]:

@@ -321,12 +321,17 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
             found.append({moveit_parameters.SEMANTIC: srdf})
         # Of names those of the files count, of all else what the launch file and its files say.
         found += later
-        own = {key: it for key, it in (values or {}).items() if not key.startswith(_NAMED)}
+        own = without_names(values or {})
         found += [own] if own and made.path in given.files else []
     if known == LIFECYCLE_MANAGER:
         managed = [*filter(None, _managed(given, name))]
         found.append({"autostart": True, "node_names": managed})
     return tuple(found)
+
+
+def without_names(values: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return parameters of MoveIt without those that name joints, links and controllers."""
+    return {key: it for key, it in values.items() if not key.startswith(_NAMED)}
 
 
 def _publisher_parameters(given: _Given, name: str) -> Parameters:

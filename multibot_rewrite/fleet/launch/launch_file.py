@@ -19,6 +19,7 @@ from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotSta
 from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.outputs.related_files import launched_values
+from multibot_rewrite.fleet.outputs.rviz_outputs import RVIZ as PROGRAM
 from multibot_rewrite.planning.start import File, Start, shell_line
 from multibot_rewrite.producers.launch.handed_on import for_robot
 
@@ -60,8 +61,16 @@ def fleet_starts(
     clock = None if others else first
     source = os.path.basename(plan.file.file) or "a fleet"
     count = plural(len(plan.robots), "robot")
-    # A window that shows one robot alone is not opened without it.
-    opened = lists_by_key((name, it._replace(condition=RVIZ)) for name, it in opens)
+    # A window that shows one robot alone is not opened without it, and has what his launch file gives.
+    rviz = {it.name for one in plan.evidence.values() for it in one.nodes if it.kind == PROGRAM}
+    given = {
+        key[0]: (launch_actions.without_names(it),) for key, it in values.items() if key[1] in rviz
+    }
+    wired = (
+        (name, it._replace(condition=RVIZ, parameters=(*it.parameters, *given.get(name, ()))))
+        for name, it in opens
+    )
+    opened = lists_by_key(wired)
     robots = [it._replace(starts=(*it.starts, *opened.pop(it.name, ()))) for it in robots]
     launched = launched_simulator(plan.file)
     idle = (one for it in plan.robots for one in plan.evidence_of(it).idle)

@@ -6,8 +6,10 @@ launch/sensors.py): relative ROS names of its file are there."""
 
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from textwrap import indent
 from typing import NamedTuple
 
+from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.grouping import sets_by_key
@@ -18,8 +20,8 @@ from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.output_file import yaml_of
-from multibot_rewrite.producers.launch.bridges import files_in, rows_in_words
-from multibot_rewrite.producers.launch.handed_on import handed_on
+from multibot_rewrite.producers.launch.bridges import files_in, made_files, rows_in_words
+from multibot_rewrite.producers.launch.handed_on import for_any, for_robot, handed_on
 from multibot_rewrite.producers.launch.of_robot import is_of_robot
 from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
@@ -75,7 +77,7 @@ def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
 
 
 def _bridge_rows(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
-    """Return bridge rows in arguments as texts, by launch file and line; and bridges' own files."""
+    """Return texts of bridge rows for any robot, by the files that have or make them; other files."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     found: dict[str, str] = {}
     nodes = launch_of(spec.launch, spec.words[0]).nodes
@@ -85,8 +87,9 @@ def _bridge_rows(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
             text = found.get(it.place.file, "")
             gap = "\n" * max(it.place.line - 1 - text.count("\n"), 0)
             found[it.place.file] = f"{text}{gap}{rows}"
+        found |= made_files(it)
     files = dict.fromkeys(file for it in nodes for file in files_in(it))
-    return found, tuple(filter(os.path.isfile, files))
+    return for_any(found, spec.words[0]), tuple(filter(os.path.isfile, files))
 
 
 def _with_bridges(spec: RobotSpec, found: Mapping[str, str], files: Sequence[str]) -> RobotSpec:
@@ -97,7 +100,8 @@ def _with_bridges(spec: RobotSpec, found: Mapping[str, str], files: Sequence[str
     if spec.simulator == REAL or own == spec.related_files.get("bridge", ()):
         return spec
     related_files = {**spec.related_files, "bridge": own}
-    return spec._replace(related_files=related_files, filled=(*spec.filled, *found.items()))
+    filled = for_robot(found, spec.words[0]).items()
+    return spec._replace(related_files=related_files, filled=(*spec.filled, *filled))
 
 
 def _sets_parameters(path: str) -> bool:
@@ -117,6 +121,9 @@ def _with_files(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, li
         there = taken.setdefault(os.path.basename(it.path), it.path)
         whole = yaml_of(it.path).text
         text = without(whole, it.robot) if it.robot else whole
+        above = _key_around(it, whole) if it.text != whole else ""
+        if above and above not in spec.words:
+            text = f"{above}:\n{indent(text, '  ')}"
         where = {"file": it.place.file, "line": it.place.line}
         if os.path.realpath(there) != it.path:
             message = f"the launch gives a node {it.path}; {there} is rewritten in its place"
@@ -132,6 +139,14 @@ def _with_files(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, li
             notes.append(NOT_REWRITTEN.finding(message, hint, level=WARNING, **where))
     related_files = {**spec.related_files, PARAMS: tuple(own)} if own else spec.related_files
     return spec._replace(related_files=related_files, filled=(*spec.filled, *filled)), notes
+
+
+def _key_around(it: _Named, text: str) -> str:
+    """Return the key that a launch puts around a file's sections (``root_key``); empty without one."""
+    above, own = load_yaml(it.text, it.path), load_yaml(text, it.path)
+    key = next(iter(above), "") if isinstance(above, dict) and isinstance(own, dict) else ""
+    inside = above[key] if key else None
+    return str(key) if isinstance(inside, dict) and own.keys() == inside.keys() else ""
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
@@ -185,7 +200,11 @@ def _with_namespaces(spec: RobotSpec, robots: Collection[str]) -> RobotSpec:
     values = (value.strip("/") for it in spec.launch for _, value in it.arguments)
     words = {*robots, *filter(None, values)}
     nodes = (it for it in launch_of(spec.launch, spec.name).nodes if it.package in _PACKAGES)
-    told = {os.path.basename(name): _below(it, words) for it in nodes for name in files_in(it)}
+    told = {
+        os.path.basename(name): _below(it, words)
+        for it in nodes
+        for name in (*files_in(it), *made_files(it))
+    }
     found = ((path, told.get(os.path.basename(path), "")) for path in files)
     return spec._replace(bridges_below=tuple((path, below) for path, below in found if below))
 

@@ -2,18 +2,29 @@
 """The simulator as the launch files of a robot start it: its world, its options, if it has a window."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 from itertools import pairwise
-from typing import NamedTuple
+from typing import NamedTuple, cast
+
+from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.releases import ROS_2
+from multibot_rewrite.description.readback.reading import read_tree
+from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
+from multibot_rewrite.planning.of_runs import with_names
+from multibot_rewrite.planning.records import Run
+from multibot_rewrite.planning.table import plugin_nodes
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR, SIMULATORS
 from multibot_rewrite.producers.launch.launched import world_files
+from multibot_rewrite.system.records import Place
 
 # Options of ``gz sim`` that are switches of the built launch file: -r it has always.
 _SERVER, _WINDOW, _OWN = "-s", "-g", ("-r", "-s", "-g")
@@ -60,6 +71,26 @@ def with_launched_world(file: FleetFile) -> FleetFile:
         if read_document(read_file(own.world), own.world).root.find("world") is not None:
             return file._replace(simulator_world=own.world, world_place=place)
     return file
+
+
+def name_in_world(one: _Element) -> str:
+    """Return what a <model> or <include> of a world is called."""
+    return one.get("name") or text_at(one, "name") or text_at(one, "uri").rpartition("/")[2]
+
+
+def nodes_of_world(file: FleetFile, robots: Collection[str]) -> Iterator[Run]:
+    """Yield the nodes of a Gazebo Classic world that launch files name, without those of ``robots``."""
+    own = launched_simulator(file)
+    if not own.is_classic or not os.path.isfile(own.world):
+        return
+    with suppress(InputError):  # it is told where the launch is read
+        root = read_xml(read_file(own.world), own.world)
+        for it in [it for it in root.iter("model", "include") if name_in_world(it) in robots]:
+            cast("_Element", it.getparent()).remove(it)
+        reading = read_tree(root, builtin_tree((), file.distro, ROS_2).definitions)
+        lines = [cast("int", it.sourceline) for it in root.iter("plugin")]
+        for node, run in zip(reading.nodes, plugin_nodes(reading, ""), strict=True):
+            yield with_names(run)._replace(place=Place(own.world, lines[node.number]))
 
 
 def _options(words: Sequence[str]) -> Iterator[str]:

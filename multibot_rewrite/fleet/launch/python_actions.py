@@ -15,9 +15,9 @@ from multibot_rewrite.planning.start import (
     Start,
     Text,
     in_order,
-    in_shares,
     name_in,
     values_in,
+    with_folders,
     with_rest,
 )
 
@@ -237,12 +237,11 @@ def value(it: Any) -> str:
 
 
 def _quoted_text(it: str) -> str:
-    """Return the Python of a text; the share folder of a package is asked for when it starts."""
-    parts = in_shares(it)
+    """Return the Python of a text; the folder of a package is asked for when it starts."""
+    parts = with_folders(it, "FindPackageShare({!r})".format, "FindPackagePrefix({!r})".format)
     if len(parts) == 1:
         return repr(it)
     parts[::2] = map(repr, parts[::2])
-    parts[1::2] = (f"FindPackageShare({one!r})" for one in parts[1::2])
     return f"[{', '.join(one for one in parts if one != repr(''))}]"
 
 

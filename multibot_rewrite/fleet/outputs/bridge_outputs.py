@@ -25,14 +25,16 @@ from multibot_rewrite.fleet.outputs.spawn import simulators
 from multibot_rewrite.fleet.robots.fitting.fitted import brings_transforms
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_groups import group_robots
+from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.planning.bridged_topics import (
+    DIRECTIONS,
     BridgedTopic,
     UnbridgedTopic,
     as_yaml,
     bridged_topics,
 )
 from multibot_rewrite.producers.ends import BRIDGE_FILE
+from multibot_rewrite.producers.launch.bridges import rows_of_text
 from multibot_rewrite.related_files.bridge import (
     BOTH,
     GZ,
@@ -42,6 +44,7 @@ from multibot_rewrite.related_files.bridge import (
     rewrite_bridge,
 )
 from multibot_rewrite.related_files.context import FileTemplate, fill_template
+from multibot_rewrite.related_files.names.node_topics import robot_topic
 from multibot_rewrite.related_files.rviz.read_config import text_of
 from multibot_rewrite.related_files.yaml_text import (
     blocks,
@@ -51,6 +54,10 @@ from multibot_rewrite.related_files.yaml_text import (
     moved,
     read_yaml,
 )
+from multibot_rewrite.system.records import PUBLISHES, SERVES
+from multibot_rewrite.system.words import is_order, is_viewer
+
+_GIVES = (PUBLISHES, SERVES)
 
 
 def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
@@ -62,16 +69,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
     topics, unbridged = bridged_topics(
         fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, placed
     )
-    # The groups of robots with their bridge files by path, each rewritten once.
-    groups = []
-    for group in group_robots(plan):
-        spec = group.robots[0].spec
-        above = spec.bridge_namespace_of
-        bridges = {
-            it: rewrite_bridge(own_yaml(spec, it), group.context, above=above(it))
-            for it in group.related_files.get("bridge", ())
-        }
-        groups.append((group, bridges))
+    groups = _bridges_by_group(plan)
     for group, files in groups:
         for file in files.values():
             yield from file.own.findings
@@ -94,6 +92,48 @@ def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
                 message = f"{it.what} of {robot.spec.name} is not bridged: {it.why}"
                 yield NO_TOPIC.finding(message, it.hint, file=robot.spec.description, line=line)
     yield from _shared_bridge([files for _, files in groups], topics, simulators(plan) == ["gz"])
+
+
+def _bridges_by_group(plan: FleetPlan) -> list[tuple[RobotGroup, dict[str, BridgeFile]]]:
+    """Return the groups of robots with their bridge files by path, each rewritten once."""
+    groups = []
+    for group in group_robots(plan):
+        spec = group.robots[0].spec
+        above = spec.bridge_namespace_of
+        bridges = {
+            it: rewrite_bridge(own_yaml(spec, it), group.context, above=above(it))
+            for it in group.related_files.get("bridge", ())
+        }
+        groups.append((group, bridges))
+    return groups
+
+
+def given_once(plan: FleetPlan) -> list[str]:
+    """Return topics and services of what runs once for all robots, whose other end robots have.
+
+    They are those that bridges pass on of the world, and what nodes for all robots send, without
+    orders. A robot that has both ends itself keeps its own."""
+    fleet = plan.fleet
+    once = {
+        (name, True)
+        for run, end, name in fleet.table.ends
+        if not (run.robot or is_viewer(run.name) or is_order(name, end.type)) and end.role in _GIVES
+    }
+    for _, files in _bridges_by_group(plan):
+        rows = (row.end for it in files.values() for row in rows_of_text(it.shared))
+        once |= {(f"/{it.name.lstrip('/')}", it.role in _GIVES) for it in rows}
+    once = {it for it in once if it[0].strip("/") not in fleet.naming.shared_topics}
+    if not once:
+        return []
+    own = {(name, end.role in _GIVES) for run, end, name in fleet.table.ends if run.robot}
+    topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, fleet.table.runs)
+    own |= {(it.ros, it.direction != DIRECTIONS["out"]) for it in topics if it.robot}
+    each = [it.names._replace(robot=it.spec.namespace) for it in plan.robots]
+    found = ((name, gives, robot_topic(it, name)) for name, gives in sorted(once) for it in each)
+    here = ((name, its, gives) for name, gives, its in found)
+    return [
+        name for name, its, gives in here if (its, not gives) in own and (its, gives) not in own
+    ]
 
 
 def _robot_bridges(

@@ -29,6 +29,7 @@ from multibot_rewrite.description.sources.world_systems import needed_systems
 from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.document import Document, read_document, tag_end, text_slot
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.launched_simulator import name_in_world
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, systems_of
@@ -71,17 +72,12 @@ def own_world(
     edits += _own_paths(it)
     findings: list[Finding] = []
     for kind in _robots_by_description(robots):
-        gone = []
-        for one in world.iterchildren("include", "model"):
-            uri = text_at(one, "uri")
-            found = model_file(uri, os.path.dirname(os.path.abspath(path))) if uri else ""
-            is_of_file = bool(found) and os.path.realpath(found) in kind.files
-            gone += [one] if is_of_file or _model_name(one) in kind.names else []
-        names = kind.names | {name for one in gone if (name := _model_name(one))}
+        gone = [one for one in world.iterchildren("include", "model") if _is_robot(one, kind, path)]
+        names = kind.names | {name for one in gone if (name := name_in_world(one))}
         for one in gone:
             edits.append(Edit(*it.spans.of(one), b"", None))
             findings.append(
-                _world_finding(it, one, f"the world's {_model_name(one)!r} is left out", NOTE)
+                _world_finding(it, one, f"the world's {name_in_world(one)!r} is left out", NOTE)
             )
         inside = {below for one in gone for below in one.iter()}
         for plugin in world.iter("plugin"):
@@ -104,10 +100,37 @@ def world_topics(path: str) -> dict[str, str]:
         return _world_topics("empty", DEFAULTS)
     plugins = [library_key(it.get("filename") or "") for it in world.iterchildren("plugin")]
     systems = [it.removeprefix("gz-sim-").removesuffix("-system") for it in plugins]
-    texts = (text_of(it) for it in world.iter("*") if str(it.tag).endswith("topic"))
-    named = {*texts, *(it.get("topic", "") for it in world.iter("*"))} - {""}
-    told = {f"/{it.lstrip('/')}": "" for it in named}
+    told = {f"/{it}": "" for it in _topics_in(world)}
     return told | _world_topics(world.get("name", ""), systems or DEFAULTS)
+
+
+def _topics_in(element: _Element) -> set[str]:
+    texts = (text_of(it) for it in element.iter("*") if str(it.tag).endswith("topic"))
+    named = {*texts, *(it.get("topic", "") for it in element.iter("*"))}
+    return {it.lstrip("/") for it in named} - {""}
+
+
+def names_of_world(path: str, robots: Sequence[RewrittenRobot]) -> frozenset[str]:
+    """Return the models in a user's world that are no robots, and the gz topics that it names."""
+    root = read_document(read_file(path), path).root if path else None
+    world = root.find("world") if root is not None else None
+    kinds = [*_robots_by_description(robots)]
+    found: set[str] = set()
+    for one in world.iterchildren("*") if world is not None else ():
+        if any(_is_robot(one, kind, path) for kind in kinds):
+            continue
+        found |= _topics_in(one)
+        if one.tag in ("include", "model"):
+            found.add(name_in_world(one))
+    return frozenset(found)
+
+
+def _is_robot(one: _Element, kind: _Kind, path: str) -> bool:
+    """Return whether a model in the world at ``path`` is a robot of this kind, by name or file."""
+    uri = text_at(one, "uri")
+    found = model_file(uri, os.path.dirname(os.path.abspath(path))) if uri else ""
+    is_of_file = bool(found) and os.path.realpath(found) in kind.files
+    return is_of_file or name_in_world(one) in kind.names
 
 
 def _world_topics(world: str, systems: Sequence[str]) -> dict[str, str]:
@@ -129,10 +152,6 @@ def _robots_by_description(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
         prefixes = {it.partition("/")[0] if "/" in it else "" for it in links}
         names = {model.get("name", ""), *(prefixes if len(prefixes) == 1 else ())} - {""}
         yield _Kind(alike, frozenset(names), frozenset(files))
-
-
-def _model_name(one: _Element) -> str:
-    return one.get("name") or text_at(one, "name") or text_at(one, "uri").rpartition("/")[2]
 
 
 def _plugin_edits(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:

@@ -10,6 +10,7 @@ from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.world_file import names_of_world
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import (
     launched_nodes,
@@ -36,6 +37,8 @@ class RobotGroup(NamedTuple):
 
 def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     """Yield the groups of a fleet, in the order of their first robots."""
+    has_bridge = any(it.spec.related_files.get("bridge") for it in plan.robots)
+    of_world = names_of_world(plan.file.simulator_world if has_bridge else "", plan.robots)
     for robots in lists_by_key((_key(it.spec), it) for it in plan.robots).values():
         spec = robots[0].spec
         evidence = plan.evidence_of(robots[0])
@@ -44,7 +47,8 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         context = make_context(declared, naming, facts, plan.file.distro, own, words, given)
         others = launched_nodes(evidence, facts)
         every = (*facts, *others)
-        yield RobotGroup(tuple(robots), every, context._replace(frames=evidence.frames))
+        context = context._replace(frames=evidence.frames, of_world=of_world)
+        yield RobotGroup(tuple(robots), every, context)
 
 
 def _key(spec: RobotSpec) -> object:

@@ -143,6 +143,12 @@ def robot_nodes(
     # A controller manager that only a parameter file has is as its usual launch files start it.
     started_here = {it.name: it for it in load_node_set(PROGRAM, file.distro) if it.name == MANAGER}
     without, findings = nodes_with(launched, node_set, given, known | started_here)
+    has_manager = any(it.name == MANAGER for it in node_set) or any(
+        it.manager for it in member.reading.nodes
+    )
+    if launched and launched.whole and launched.spawned and not has_manager:
+        # One that only has parameters is not started: the spawners wait as they do for one robot.
+        without = tuple(it for it in without if it.name != MANAGER or it.name in launched.started)
     source = member.source
     standing = _without_wheel_controllers(without, given, member)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)

@@ -35,6 +35,8 @@ _ROW = lazy_compile(
 )
 _ROLES = {"[": (PUBLISHES,), "]": (SUBSCRIBES,), "@": (PUBLISHES, SUBSCRIBES)}
 _WAYS = {"GZ_TO_ROS": "[", "ROS_TO_GZ": "]", "BIDIRECTIONAL": "@"}
+# The parameter that names a bridge's file.
+CONFIG_FILE = "config_file"
 _IMAGE = "sensor_msgs/msg/Image"
 _BRIDGES = ("ros_gz_bridge/parameter_bridge", "ros_ign_bridge/parameter_bridge")
 _OF_IMAGES = ("ros_gz_image/image_bridge", "ros_ign_image/image_bridge")
@@ -75,8 +77,15 @@ def files_in(node: LaunchedNode) -> Iterator[str]:
         values = (load_yaml(it.text, it.file or node.place.file) for it in node.parameters)
         sections = (one for it in values if isinstance(it, dict) for one in it.values())
         given = [one.get("ros__parameters") for one in sections if isinstance(one, dict)]
-        paths = (str(it.get("config_file") or "") for it in given if isinstance(it, dict))
+        paths = (str(it.get(CONFIG_FILE) or "") for it in given if isinstance(it, dict))
         yield from filter(None, paths)
+
+
+def made_files(node: LaunchedNode) -> dict[str, str]:
+    """Return the texts that a launch makes of a bridge's files (``ReplaceString``), by their paths."""
+    given = node.parameters if passes_topics_on(node.package, node.executable) else ()
+    made = {it.source: it.text for it in given if it.source and not it.file}
+    return {path: text for path, text in made.items() if isinstance(load_yaml(text, path), list)}
 
 
 def is_bridge(it: Run) -> bool:
@@ -90,12 +99,12 @@ def bridged_by(it: Run) -> Iterator[Row]:
     if not is_bridge(it):
         return
     below = it.namespace if expands(it) else "/"
-    given = it.values.get("config_file")
+    given = it.values.get(CONFIG_FILE)
     path = str(given.value) if given else ""
     own = [read_file(path).decode("utf-8", "replace")] if os.path.isfile(path) else []
     rows = [*_argument_rows(it.program, it.arguments)]
     for text in (*own, *it.texts):
-        rows += _rows_of_text(text)
+        rows += rows_of_text(text)
     yield from (Row(row.end, expand(row.inside, below, it.name)) for row in rows)
 
 
@@ -164,7 +173,7 @@ def _topic_rows(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
 
 
 @lru_cache(maxsize=4096)  # a fleet has one a robot, and several rules ask for it
-def _rows_of_text(text: str) -> tuple[Row, ...]:
+def rows_of_text(text: str) -> tuple[Row, ...]:
     """Return the rows of a bridge file; none for another text."""
     rows: list[Row] = []
     try:

@@ -26,8 +26,9 @@ from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import OFF, text
-from multibot_rewrite.producers.launch.door import of_launch
+from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.handed_on import DESCRIPTION
+from multibot_rewrite.producers.launch.kept_paths import is_made, is_of_machine
 from multibot_rewrite.producers.launch.records import FileRead
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 
@@ -50,7 +51,21 @@ def read_commands() -> list[str]:
     known = of_launch("substitutions")
     known.Command.perform = lambda self, context: _command_output(self, context, lines)
     known.FindExecutable.perform = lambda self, context: text(self.name, context)
+    _find_programs(of_launch_ros("substitutions").ExecutableInPackage)
     return lines
+
+
+def _find_programs(substitution: Any) -> None:
+    """Let ``ExecutableInPackage`` find programs of packages that are there as sources, unbuilt."""
+    installed = substitution.perform
+
+    def found(self: Any, context: Any) -> str:
+        folder = super(substitution, self).perform(context)
+        names = text(self.package, context), text(self.executable, context)
+        path = os.path.join(folder, "lib", *names)
+        return path if is_made(path) else installed(self, context)
+
+    substitution.perform = found
 
 
 def start_nothing(lines: list[str]) -> list[str]:
@@ -104,9 +119,6 @@ class _Program:
     poll = kill = terminate = wait
 
 
-# Below these is what a machine has: devices, and what its kernel says of it; but for what all have.
-_OF_MACHINE = ("/dev/", "/proc/", "/run/", "/sys/")
-_EVERYWHERE = frozenset(("/dev/null", "/dev/random", "/dev/urandom", "/dev/zero"))
 # What Python tells before it asks for addresses; the fences refuse that.
 _NETWORK = frozenset(("socket.__new__", "socket.getaddrinfo", "socket.gethostbyname"))
 
@@ -125,7 +137,7 @@ def see_no_machine(lost: list[str]) -> None:
         def looked(path: Any = os.curdir, *words: Any, **options: Any) -> Any:
             named = path is not None and not isinstance(path, int)
             place = os.path.abspath(os.fsdecode(path)) if named else ""
-            if not f"{place}/".startswith(_OF_MACHINE) or place in _EVERYWHERE:
+            if not (place and is_of_machine(place)):
                 return look(path, *words, **options)
             tell(place)
             return answer(place)

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.findings.finding import INCONCLUSIVE, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.producers.launch.bridges import CONFIG_FILE, made_files
 from multibot_rewrite.producers.launch.handed_on import HandedOn, Passing
 from multibot_rewrite.producers.launch.kept_paths import NOT_KNOWN as LEFT_OUT
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
@@ -53,8 +54,9 @@ def launch_findings(
         yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
     for node in graph.nodes:
         for key in dict.fromkeys(it.untold for it in node.parameters if it.untold):
-            message = f"the parameter {key} of {node.name or node.executable} {LEFT_OUT}"
-            yield NOT_WHOLE.finding(message, _WITHOUT_VALUES, **_place(node.place))
+            if key != CONFIG_FILE or not made_files(node):
+                message = f"the parameter {key} of {node.name or node.executable} {LEFT_OUT}"
+                yield NOT_WHOLE.finding(message, _WITHOUT_VALUES, **_place(node.place))
     for name, it in unknown.items():
         message = f"node {name} ({it.package} {it.executable}) is not known"
         hint = f"describe it in a file of nodes (docs/node-sets.md){or_read()}"

@@ -42,6 +42,7 @@ _CLOCK = "use_sim_time"
 DESCRIPTION, SEMANTIC = "robot_description", "robot_description_semantic"
 # What stands for the robot, as in parameter files of vendors.
 _ROBOT = "<robot>"
+_FOLDER = re.compile(r"\$\(find-pkg-\w+ ([\w-]+)\)")
 # They run the program that follows.
 _RUNNERS = frozenset(("sudo", "env", "nice", "bash", "sh", "python3", "python", "xterm", "exec"))
 
@@ -126,9 +127,10 @@ def process_name(it: LaunchedNode) -> str:
         words = [it.executable, *it.arguments] if it.package else shlex.split(it.executable)
     except ValueError:
         words = it.executable.split()
-    words = [*words, *("" if it.package else " ".join(it.arguments)).split()]
-    own = (word for word in words if word[:1] != "-" and os.path.basename(word) not in _RUNNERS)
-    return os.path.basename(next(own, it.executable))
+    more = "" if it.package else _FOLDER.sub(r"\1", " ".join(it.arguments))
+    words = [*words, *more.split()]
+    own = (os.path.basename(word) for word in words if word[:1] != "-")
+    return next((name for name in own if name not in _RUNNERS), os.path.basename(it.executable))
 
 
 def _each(it: Any, change: Callable[[str], str]) -> Any:

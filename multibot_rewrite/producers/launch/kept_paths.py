@@ -17,6 +17,9 @@ from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED, SOURCES
 
 LIMIT = 1 << 24
+# Below these is what a machine has: devices, and what its kernel says of it; but for what all have.
+_OF_MACHINE = ("/dev/", "/proc/", "/run/", "/sys/")
+_EVERYWHERE = frozenset(("/dev/null", "/dev/random", "/dev/urandom", "/dev/zero"))
 # What the folder is called in which launch files are read.
 FOLDER = "multibot_launch_"
 # The folder of what is gone when the launch is over.
@@ -25,9 +28,17 @@ NOT_KNOWN = "comes from a package that is not installed, or from the launch itse
 _REST = r"[^\s'\"<>:;,|)]*"
 
 
+def is_of_machine(path: str) -> bool:
+    """Return whether a path is that of a device, or of another thing that one machine alone has."""
+    place = os.path.abspath(path)
+    return f"{place}/".startswith(_OF_MACHINE) and place not in _EVERYWHERE
+
+
 def is_made(path: str) -> bool:
     """Return whether a path is a file of the launch itself; a text of several lines is no path."""
-    return "\n" not in path and os.path.realpath(path).startswith(os.path.realpath(_top()) + os.sep)
+    if "\n" in path or is_of_machine(path):
+        return False
+    return os.path.realpath(path).startswith(os.path.realpath(_top()) + os.sep)
 
 
 def _top() -> str:
@@ -70,7 +81,9 @@ def read_text(path: str) -> str:
 
 def kept_file(path: str) -> str:
     """Return the real path of a file that remains after the launch; empty otherwise."""
-    return os.path.realpath(path) if os.path.isfile(path) and not is_made(path) else ""
+    if is_of_machine(path) or is_made(path) or not os.path.isfile(path):
+        return ""
+    return os.path.realpath(path)
 
 
 def with_real_paths(it: Any) -> Any:
@@ -94,7 +107,11 @@ def real_paths(text: str) -> str:
 
 def _real_path(path: str, below: str) -> str:
     """Return what a path ``below`` a launch file's folder is afterwards: a source, or GONE."""
-    first, *inside = below.strip("/").split("/")
+    # An installed package is no link: above its share folder is that of all packages.
+    path, below = map(os.path.normpath, (path, below.strip("/")))
+    first, *inside = below.split("/")
+    if first in (NOT_INSTALLED, SOURCES) and inside[:1] == ["lib"] and len(inside) > 1:
+        return "/".join((f"$(find-pkg-prefix {inside[1]})", *inside))
     if first == NOT_INSTALLED and len(inside) > 1:
         return "/".join((f"$(find-pkg-share {inside[1]})", *inside[2:]))
     if first != SOURCES or inside[:1] != ["share"]:

@@ -21,6 +21,8 @@ from multibot_rewrite.producers.launch.stand_in.actions import (
 )
 from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.packages import (
+    FindPackage,
+    FindPackagePrefix,
     FindPackageShare,
     PackageNotFoundError,
 )
@@ -82,9 +84,14 @@ def performed(path: str, launches: Sequence[Launching]) -> list[Performed]:
         return [_perform_launch(module, path, it, packages) for it in launches]
 
 
+def prefix(package: str) -> str:
+    """Return the folder that every package is installed in here."""
+    return f"/{package}"
+
+
 def share(package: str) -> str:
     """Return the share folder that every package has here."""
-    return f"/{package}/share/{package}"
+    return f"{prefix(package)}/share/{package}"
 
 
 def _loaded(path: str) -> ModuleType:
@@ -108,18 +115,22 @@ class _Packages:
             def find(self, package_name: str) -> str:
                 return share(package_name)
 
+        class Prefix(FindPackagePrefix):
+            def find(self, package_name: str) -> str:
+                return prefix(package_name)
+
         asked, found = "ament_index_python.packages", "launch_ros.substitutions"
         known = contents()
         return {
             asked: {**known[asked], "get_package_prefix": self.prefix},
-            found: {**known[found], "FindPackageShare": Share},
+            found: {**known[found], "FindPackageShare": Share, "FindPackagePrefix": Prefix},
         }
 
     def prefix(self, package: str) -> str:
         """Return the folder of a package; raises PackageNotFoundError."""
         if package not in self.installed:
             raise PackageNotFoundError(package)
-        return f"/{package}"
+        return prefix(package)
 
 
 def _perform_launch(module: Any, path: str, it: Launching, packages: _Packages) -> Performed:
@@ -221,7 +232,7 @@ class _Seen(NamedTuple):
         if isinstance(it, Mapping):
             return {self.plain(key): self.plain(one) for key, one in it.items()}
         if isinstance(it, list | tuple):
-            if any(isinstance(one, FindPackageShare) for one in it):
+            if any(isinstance(one, FindPackage) for one in it):
                 return text_of(self.context, it)
             return [self.plain(one) for one in it]
         return self.of_action(it)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.producers.launch.commands import (
@@ -50,9 +50,11 @@ from multibot_rewrite.producers.launch.source_packages import (
 from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.packages import (
+    FindPackage,
+    FindPackagePrefix,
     FindPackageShare,
     PackageNotFoundError,
-    get_package_share_directory,
+    get_package_prefix,
 )
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown, imported
 from multibot_rewrite.producers.launch.visit import ASKED, visit_all
@@ -147,11 +149,12 @@ def _lost_packages(notes: Iterable[LaunchNote]) -> list[str]:
 
 def read_own(file: str, folder: str) -> LaunchGraph:
     """Return the graph of a launch file of ``build``, read in this process, as ``read_graph``."""
-    before, find, order = tempfile.tempdir, FindPackageShare.find, LaunchOrder(file)
+    before, order = tempfile.tempdir, LaunchOrder(file)
+    find = FindPackagePrefix.find, FindPackageShare.find
     with standing_in():
         tempfile.tempdir = folder
         # Parameter files have substitutions as well.
-        FindPackageShare.find = _share  # type: ignore[method-assign, assignment]
+        _find_packages_by(_prefix, _share)
         keep_places()
         try:
             return with_real_paths(_visited_graph(order))  # type: ignore[no-any-return]
@@ -159,15 +162,25 @@ def read_own(file: str, folder: str) -> LaunchGraph:
             raise UnreadableError(failure(error)) from error
         finally:
             tempfile.tempdir = before
-            FindPackageShare.find = find  # type: ignore[method-assign]
+            _find_packages_by(*find)
 
 
-def _share(_self: FindPackageShare, package_name: str) -> str:
-    """Return the share folder of a package, which is empty for one that is not here."""
+def _find_packages_by(prefix: Callable[..., str], share: Callable[..., str]) -> None:
+    """Let the substitutions for folders of packages find them by these methods."""
+    FindPackagePrefix.find, FindPackageShare.find = prefix, share  # type: ignore[method-assign]
+
+
+def _prefix(_self: FindPackage, package_name: str) -> str:
+    """Return what a package is installed in; an empty folder for one that is not here."""
     try:
-        return get_package_share_directory(package_name)
+        return get_package_prefix(package_name)
     except LookupError:
-        return os.path.join(tempfile.gettempdir(), NOT_INSTALLED, "share", package_name)
+        return os.path.join(tempfile.gettempdir(), NOT_INSTALLED)
+
+
+def _share(own: FindPackage, package_name: str) -> str:
+    """Return the share folder of a package, which is empty for one that is not here."""
+    return os.path.join(_prefix(own, package_name), "share", package_name)
 
 
 def _visited_graph(order: LaunchOrder) -> LaunchGraph:

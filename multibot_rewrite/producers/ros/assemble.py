@@ -43,6 +43,8 @@ TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
 _LISTENED_TO = frozenset((
     *TF_TYPES, "nav_msgs/msg/OccupancyGrid", "geometry_msgs/msg/PoseWithCovarianceStamped",
 ))  # fmt: skip
+# While a watched graph changes: what is silent is not known.
+LISTENING = Caveat("headers-not-read", False, "sensors are listened to again after a change")
 NO_ENCLAVES: Mapping[str, str] = {}
 # Of transforms: below a micrometre.
 _DIGITS = 9

@@ -142,7 +142,7 @@ class HeaderSamples:
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe
         self._asked: set[str] = set()
-        self._open: dict[str, Callable[[], None]] = {}
+        self.open: dict[str, Callable[[], None]] = {}
         self._heard: dict[str, dict[tuple[str, ...], Heard]] = defaultdict(dict)
         self._clock: Pace | None = None
         self._spans: dict[str, _Span] = {}
@@ -160,7 +160,7 @@ class HeaderSamples:
             self._asked.add(topic.name)
             receive = partial(self._receive, topic)
             if end := self._subscribe(topic.name, topic.type, topic.latched, receive):
-                self._open[topic.name] = end
+                self.open[topic.name] = end
                 self._bodies.update([topic.name] if is_of_a_body(topic.type) else [])
                 self._began = self._since[topic.name] = time.monotonic()
 
@@ -181,7 +181,7 @@ class HeaderSamples:
             own[said] = told
         more = topic.has_rate and self._spanned(topic, data, mark)
         done = not more and (topic.publishers == 1 or len(own) >= MOST_FRAMES)
-        if done and (end := self._open.pop(topic.name, None)):
+        if done and (end := self.open.pop(topic.name, None)):
             end()
 
     def _spanned(self, topic: SensorTopic, data: bytes, mark: Mark) -> bool:
@@ -200,13 +200,13 @@ class HeaderSamples:
         longer = seconds * (BODY_FACTOR if silent & self._bodies else 1)
         if silent and now - self._began < longer:
             return True
-        once = (it for it in self._open if it in self._spans and self._spans[it].messages == 1)
+        once = (it for it in self.open if it in self._spans and self._spans[it].messages == 1)
         return any(now - self._since[it] < ONE_SECONDS for it in once)
 
     def silent(self) -> Set[str]:
         """Return the topics on which nothing has come."""
         runs = {CLOCK} if self._clock and self._clock.between else set()
-        return self._open.keys() - self._heard.keys() - runs
+        return self.open.keys() - self._heard.keys() - runs
 
     def heard(self) -> tuple[Heard, ...]:
         """Return what was heard by topic; several for a topic that several nodes publish."""
@@ -214,7 +214,7 @@ class HeaderSamples:
         rates = {it: own.rate() or self._at_most(it, now) for it, own in self._spans.items()}
         heard = [it for own in self._heard.values() for it in own.values()]
         told = [it._replace(rate=rates.get(it.topic, 0.0)) for it in heard]
-        if CLOCK in self._open:
+        if CLOCK in self.open:
             clock = self._clock or Pace()
             stands = not (clock.between or clock.back)
             told.append(Heard(CLOCK, "", math.inf if stands else 0.0, back=round(clock.back, 1)))
@@ -238,7 +238,7 @@ class DescriptionSamples:
 
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe
-        self._open: dict[str, Callable[[], None]] = {}
+        self.open: dict[str, Callable[[], None]] = {}
         self._asked: set[str] = set()
         self._found: dict[str, Description] = {}
 
@@ -252,13 +252,13 @@ class DescriptionSamples:
                 latched = not (it.qos and it.qos.durability == "VOLATILE")
                 end = self._subscribe(it.name, it.type, latched, partial(self._receive, it.name))
                 if end:
-                    self._open[it.name] = end
+                    self.open[it.name] = end
 
     def _receive(self, topic: str, data: bytes, _: Mark = None) -> None:
         text = read_text(data)
         if text is not None:
             self._found[topic] = described(topic, text)
-            self._open.pop(topic)()
+            self.open.pop(topic)()
 
     def found(self) -> tuple[Description, ...]:
         """Return the descriptions that have come, by topic."""

@@ -19,7 +19,15 @@ from multibot_rewrite.producers.ros.participants import make_room
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, Mark, TfSubscriptions
 from multibot_rewrite.producers.zenoh.cdr import read_tf, read_transform
-from multibot_rewrite.system.records import ACTION, CALLS, SERVES, UNKNOWN_NODE, End
+from multibot_rewrite.system.records import (
+    ACTION,
+    CALLS,
+    SERVES,
+    UNKNOWN_NODE,
+    Description,
+    End,
+    Heard,
+)
 
 # The shortest pause between two polls.
 POLL_SECONDS = 0.1
@@ -162,10 +170,28 @@ class GraphListeners:
     """What is received while the graph is observed: transforms, and headers if they are asked for."""
 
     def __init__(self, session: GraphSession) -> None:
-        self._request = session.request
+        self._session, self._request = session, session.request
         self.tf = TfSubscriptions(partial(_subscribe, session))
-        self.headers = HeaderSamples(partial(_subscribe_to_headers, session))
-        self.descriptions = DescriptionSamples(partial(_subscribe_to_last, session))
+        self.headers, self.descriptions = self._samples()
+        self.began = 0.0
+
+    def _samples(self) -> tuple[HeaderSamples, DescriptionSamples]:
+        by_header = partial(_subscribe_to_headers, self._session)
+        return HeaderSamples(by_header), DescriptionSamples(
+            partial(_subscribe_to_last, self._session)
+        )
+
+    def listen_again(self, endpoints: Sequence[End]) -> None:
+        """Ask for headers and descriptions anew: what sent them may be silent, or another one."""
+        for end in (*self.headers.open.values(), *self.descriptions.open.values()):
+            end()
+        self.headers, self.descriptions = self._samples()
+        self.began = self._session.now()
+        self.update(endpoints)
+
+    def heard(self) -> tuple[tuple[Heard, ...], tuple[Description, ...]]:
+        """Return the headers and descriptions that have come."""
+        return self.headers.heard(), self.descriptions.found()
 
     def update(self, endpoints: Sequence[End]) -> None:
         """Subscribe to the topics that are published now."""

@@ -6,6 +6,7 @@ It sends one snapshot when the graph is settled or, when watching, one after eac
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import threading
@@ -17,6 +18,7 @@ from functools import partial
 from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.ask import ask_nodes
 from multibot_rewrite.producers.ros.look import (
+    HEADER_SECONDS,
     POLL_SECONDS,
     TF_SECONDS,
     GraphListeners,
@@ -58,6 +60,7 @@ from multibot_rewrite.system.records import (
     Caveat,
     End,
     Environment,
+    Heard,
     System,
 )
 
@@ -82,6 +85,7 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
     tell = lambda said: send(SO_FAR + said)  # noqa: E731
     with _open_session(request, stop, tell) as session:
         if request.watch:
+            gc.enable()  # no short process any more
             for snapshot in watch(session):
                 send(to_json(snapshot))
             return 0
@@ -148,13 +152,25 @@ def watch(session: GraphSession) -> Iterator[System]:
     before: object = None
     sent: object = None
     changed = sent_at = 0.0
+    heard, known, endpoints = ears.heard(), None, list[End]()
     answers = Answers(partial(_ask, session), session.request.asks)
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
+    since, late = clock, tuple[Caveat, ...]()
     while not session.stop.is_set():
         receive(session, pause)
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
-        state = (*overview(session), ears.tf.transforms())
+        listened, graph = session.now() - ears.began, overview(session)
+        if graph != known:
+            # Who sends a topic may be another one, or is new and had no time yet.
+            known, since, late = graph, clock, (assemble.LISTENING,)
+            ears.listen_again(())
+        elif listened >= HEADER_SECONDS and not ears.headers.keep_waiting(HEADER_SECONDS):
+            heard, late = ears.heard(), (*clock.since(since).starved(),)
+            if listened >= AGAIN_SECONDS:
+                since = clock
+                ears.listen_again(endpoints)
+        state = (*graph, ears.tf.transforms(), _without_rates(*heard))
         pause = _pause_after(time.thread_time() - began, PAUSE_FACTOR)
         if state != before:
             before, changed = state, now
@@ -166,13 +182,20 @@ def watch(session: GraphSession) -> Iterator[System]:
             if quiet:
                 cache.clear()
             names, endpoints = view(session, cache)
-            ears.tf.update(endpoints, session.request.substitutes)
+            ears.update(endpoints)
             why = QUIET if quiet else CHANGING
-            seen = _snapshot(session, names, endpoints, ears, (why, session.now(), ()))
+            seen = _snapshot(session, names, endpoints, ears, (why, session.now(), ()), late)
+            seen = seen._replace(heard=heard[0], descriptions=heard[1])
             other = answers.update(seen, quiet, session.now())
             if new or other:
                 yield with_answers(seen, answers.states, answers.asked)
         spent = time.thread_time() - began
+
+
+def _without_rates(heard: Iterable[Heard], found: object) -> tuple[object, ...]:
+    """Return what a change in makes another state: whose rate is low, but no rate."""
+    named = {(it.topic, it.frame, it.child, it.joints, 0 < it.rate < 1) for it in heard}
+    return named, found
 
 
 def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
@@ -302,6 +325,7 @@ def _snapshot(
         *ears.headers.caveats(),
         *more,
     ]
+    heard, descriptions = ears.heard()
     around = Environment(
         session.domain(),
         asked.range,
@@ -321,8 +345,8 @@ def _snapshot(
         placed,
         tuple(edges),
         around,
-        ears.headers.heard(),
-        descriptions=ears.descriptions.found(),
+        heard,
+        descriptions=descriptions,
     )
 
 

@@ -2,7 +2,7 @@
 """How many DDS participants run on this machine, whoever has heard of them: each has ports of its own.
 
 Source: DDSI-RTPS 9.6.2.3, which Fast DDS and Cyclone DDS keep to: the port at which a participant is
-found is 7400 + 250 * domain + 10 + 2 * number.
+found is 7400 + 250 * domain + 10 + 2 * number, and the next one is where it gets its data.
 """
 
 import os
@@ -14,6 +14,8 @@ from contextlib import suppress
 from typing import TypeVar
 
 TABLES = ("/proc/net/udp", "/proc/net/udp6")
+# The ports that any program gets, from domain 102 on those of participants, too.
+ANYBODYS = "/proc/sys/net/ipv4/ip_local_port_range"
 _FIRST, _A_DOMAIN, _UNICAST = 7400, 250, 10
 OPEN_HERE = "/proc/self/fd"
 # What all nodes of a large fleet say of themselves at once; net.core.rmem_max may be less.
@@ -25,7 +27,12 @@ T = TypeVar("T")
 
 def participants_here(domain: int) -> int | None:
     """Return how many participants of a domain run on this machine; None if unknown: no Linux."""
-    found = sum(port >= _UNICAST and port % 2 == 0 for port in _lost_at(domain))
+    ports, last = _lost_at(domain), _FIRST + _A_DOMAIN * (domain + 1)
+    with suppress(OSError), open(ANYBODYS) as given:
+        # There one port alone is another program's.
+        if int(given.read().split()[0]) < last:
+            ports = {it: 0 for it in ports if it % 2 == 0 and it + 1 in ports}
+    found = sum(port >= _UNICAST and port % 2 == 0 for port in ports)
     return found if os.path.exists(TABLES[0]) else None
 
 

@@ -33,7 +33,7 @@ class Request(NamedTuple):
     after ``timeout`` seconds at the latest. The snapshot has QoS and process of these topics. With
     ``watch`` it does not end, and there is a snapshot after each change. With ``substitutes``
     transforms are also read from the messages that a rehearsal has without tf2_msgs. With
-    ``headers`` one message a sensor topic is received, for its frame; not when watching. With
+    ``headers`` one message a sensor topic is received, for its frame. With
     ``asks`` nodes of a watched graph are asked for their states, each for these parameters besides.
     With ``shows`` what is seen is sent once while it is waited whether more comes.
     """

@@ -86,7 +86,7 @@ def not_converted(file: NamedFile) -> Iterator[Finding]:
 def second_model(file: NamedFile) -> Iterator[Finding]:
     """Report each other model than the first, at its first entry."""
     first: dict[str, yaml.Node] = {}
-    for node, name in models(file.document) if file.document else ():
+    for node, name in models(file.document, file.context) if file.document else ():
         first.setdefault(name, node)
     own, *others = first or ("",)
     for name in others:

@@ -211,7 +211,7 @@ def _placeholders(launched: Launched) -> Iterator[Finding]:
     started = {it.place.file for it in launched.graph.nodes}
     for place, value in given:
         left = _LEFT.search(value)
-        if left and place.file in started and left[0].startswith("$(find-pkg-share "):
+        if left and place.file in started and left[0].startswith("$(find-pkg-"):
             continue
         if left and " " not in _LEFT.sub("", value) and (place.file, left[0]) not in told:
             told.add((place.file, left[0]))

@@ -18,6 +18,7 @@ from multibot_rewrite.base.wording import only, shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import DOES
 from multibot_rewrite.rules.system.matching import qos_words
+from multibot_rewrite.rules.system.names import server_names_miss
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, at_work
@@ -76,6 +77,8 @@ def untold(found: Iterable[Finding]) -> list[Finding]:
         it._replace(level=ERROR) if it.level == WARNING and errors & {*it.names} else it
         for it in every
     ]
+    # Who gave it says more than who lacks it, unless there is a remedy.
+    every = [it for it in every if it.code != server_names_miss.code or not errors >= {*it.names}]
     others = [it for it in every if it.code != changed_since.code]
     names = {name for it in others for name in it.names}
     came = (missing_node.code, unplanned_node.code)

@@ -19,7 +19,8 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.causes import Spelled, alike, names_another
+from multibot_rewrite.rules.system.causes import Cause, Spelled, alike, names_another
+from multibot_rewrite.rules.system.likes import has_likes_of
 from multibot_rewrite.rules.system.matching import STAMPED
 from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_names
@@ -249,10 +250,15 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             obeyed = own and at_work(own.subscribers) and not _sends_already(seen, own.name)
             free = own and (own.servers or obeyed) and kind != ACTION
             rules = [Remap(node, name, own.name)] if own and free and own.type == ends.type else []
+            cause = names_another(robot, owner, rules)
+            # A drive may be idle, a stop may not.
+            alone = nodes_of(ends.publishers) == (node,) and name not in seen.orders
+            if rules and alone and not has_likes_of(seen, owner, node):
+                hint = names_another(robot, owner).hint
+                cause = Cause(f"{hint}; nobody else publishes {name}: start one for {owner} too")
             yield command_from_another_robot.finding(
-                message, **names_another(robot, owner, rules)._asdict(),
-                robot=robot, node=node, names=(name,),
-            )  # fmt: skip
+                message, **cause._asdict(), robot=robot, node=node, names=(name,)
+            )
 
 
 def _is_waited_for(seen: Index, ends: Ends) -> bool:

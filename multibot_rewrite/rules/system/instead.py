@@ -72,12 +72,12 @@ def _unread_topic(seen: Index, end: End) -> Ends | None:
     ]
     begins = [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
     if merges:
-        return _only_one(begins)
+        return _only_one(seen, begins, end)
     akin = [it for it in given if _telling_words(seen, it.name) & _telling_words(seen, end.name)]
     akin = akin or begins
     plain = end.type.startswith(_PLAIN_DATA) or end.name.startswith(f"{end.node}/")
     plain = plain or is_from_outside(end.name)
-    return _only_one(akin) or (None if plain else _only_one(given))
+    return _only_one(seen, akin, end) or (None if plain else _only_one(seen, given, end))
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
@@ -157,7 +157,8 @@ def _topic_with_data(seen: Index, end: End) -> Ends | None:
     akin = [it for it in unread if _telling_words(seen, it.name) & _telling_words(seen, end.name)]
     unread = akin if len(akin) == 1 else unread
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
-    return _only_one(given if several and unread else unread or ([] if several else same))
+    left = given if several and unread else unread or ([] if several else same)
+    return _only_one(seen, left, end)
 
 
 @once
@@ -170,9 +171,17 @@ def _names_read(seen: Index) -> Mapping[tuple[str, str, str], Set[str]]:
     return found
 
 
-def _only_one(given: Sequence[Ends]) -> Ends | None:
-    """Return the only item; None unless there is just one."""
-    return given[0] if len(given) == 1 else None
+def _only_one(seen: Index, given: Sequence[Ends], end: End) -> Ends | None:
+    """Return the only topic, or the only one of the end's kind; None unless there is just one."""
+    fitting = [it for it in given if not is_of_another_kind(seen, end, it)] or given
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def is_of_another_kind(seen: Index, end: End, ends: Ends) -> bool:
+    """Return whether a topic is from another source or place than the one that an end reads."""
+    sender = (*ends.publishers, *ends.servers)[0].node
+    wanted, offered, sender = map(seen.plain, (end.name, ends.name, sender))
+    return words.is_of_other_kind(wanted, offered, sender, end.type)
 
 
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
@@ -275,8 +284,10 @@ def _likest(seen: Index, end: End) -> Ends | None:
     given = _sent_or_served(seen)
     own = {"", seen.robot(end.node)}
     same = {at: it for one in own for at, it in given.get((end.kind, end.type, one), ())}
-    likely = (same[at] for at in sorted(same) if _may_be(seen, same[at], end))
-    alike = {it.name: it for it in likely if not _waits_itself(seen, it, end)}
+    likely = [same[at] for at in sorted(same) if _may_be(seen, same[at], end)]
+    likely = [it for it in likely if not _waits_itself(seen, it, end)]
+    fitting = [it for it in likely if not is_of_another_kind(seen, end, it)]
+    alike = {it.name: it for it in fitting or likely}
     if end.type.startswith(_PLAIN_TYPES):
         # What their names in the code have in common counts, not the robot's namespace.
         words = {last_word(one.code_name): it for it in alike.values() for one in _givers(it)}

@@ -74,7 +74,8 @@ def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
     message, cause = _difference(ends.name, others[0].node, asked, given)
     stamped = _by_a_switch(asked.keys(), given.keys())
     both, node = (*others, *own), own[0].node
-    switched = to_stamp(seen, both) if stamped else Cause("")
+    usual = _as_another_robot(seen, ends) if stamped else ""
+    switched = Cause(usual) if usual or not stamped else to_stamp(seen, both)
     level = WARNING if is_viewer(node) else ERROR
     if stale := _stale(seen, both):
         level, cause = NOTE, f"{cause}; {stale}: its type may be another one now"
@@ -83,6 +84,16 @@ def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
         message, f"{cause}{switched.hint}{see_all(both)}", settings=switched.settings,
         level=level, robot=robot, node=node, names=(ends.name,), **last_place(both),
     )  # fmt: skip
+
+
+def _as_another_robot(seen: Index, ends: Ends) -> str:
+    """Return what another robot has at the same name, if nothing is stamped there; or empty."""
+    likes = (seen.of_robot(it, ends.kind, seen.plain(ends.name)) for it in seen.robots)
+    for it in (it for it in likes if it and it.name != ends.name):
+        types = {one.type for one in (*it.publishers, *it.subscribers)}
+        if it.publishers and it.subscribers and types == {it.type.removesuffix(STAMPED)}:
+            return f": on {it.name} it is {it.type}"
+    return ""
 
 
 def _stale(seen: Index, ends: Iterable[End]) -> str:
@@ -313,7 +324,9 @@ def _ask_latched(nodes: Sequence[str], name: str) -> Cause:
         return Cause("set Durability Policy to Transient Local in its display")
     if all(last_word(it).endswith("costmap") for it in nodes):
         return to_set("static_layer.map_subscribe_transient_local", "true", *nodes)
-    return _set_qos(nodes[0], name, SUBSCRIPTION, ("durability", DURABILITY[1]))
+    causes = [_set_qos(it, name, SUBSCRIPTION, ("durability", DURABILITY[1])) for it in nodes]
+    hint = causes[0].hint.replace(nodes[0], shorten(nodes))
+    return Cause(hint, settings=tuple(one for it in causes for one in it.settings))
 
 
 def _is_latched(ends: Ends) -> bool:

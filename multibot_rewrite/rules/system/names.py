@@ -16,6 +16,7 @@ from multibot_rewrite.rules.system.instead import (
     COMMON,
     MANAGER,
     in_other_namespace,
+    is_of_another_kind,
     listed_in_vain,
     sent_instead,
 )
@@ -219,34 +220,66 @@ def _missed_topic(
     also = f" (and so does {shorten(nodes_of(more))})" if more else ""
     message = f"subscribes to {end.name}{also}, which {seen.nobody} publishes"
     message += f"; {sender} publishes {other.name}"
-    remaps = tuple(Remap(it.node, end.name, other.name) for it in (end, *more))
-    each = " to each" if more else ""
-    # The side in the wrong place is the one whose name has no robot, is below the node, or has a
-    # namespace of the other name once more in front.
-    front = other.name.removesuffix(end.name)
-    if front != other.name and end.name.startswith(f"{front}/"):
-        cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
-        remaps = (Remap(sender, other.name, end.name),)
-    elif seen.robot(end.name) not in ("", seen.robot(other.name)) and other.name not in EVERYBODYS:
-        cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
-        remaps = tuple(Remap(it, other.name, end.name) for it in nodes_of(other.publishers))
-    elif other.type != end.type:
+    if other.type != end.type:
         message += f" as {last_word(other.type)}"
-        cause = f"make both one type: set it in a parameter of one side, or convert {other.name}"
-        remaps = ()
-    elif _are_stages(end, other):
-        between = "twist_mux, velocity_smoother or collision_monitor"
-        cause, remaps = f"start what passes {other.name} on ({between}), or give both one name", ()
-    else:
-        cause = (
-            f"pass the rule {end.name}:={other.name}{each}, or write {other.name} in its parameters"
-        )
+    cause = _how_to_join(seen, [end, *more], other, sender)
     level = NOTE if is_viewer(sender) else level
     return topic_names_miss.finding(
-        message, cause + see_all((other.publishers[0], end)),
-        level=level, robot=robot, node=end.node, names=(end.name, other.name), remaps=remaps,
-        **last_place([end]),
+        message, cause.hint + see_all((other.publishers[0], end)),
+        level=level, robot=robot, node=end.node, names=(end.name, other.name),
+        remaps=cause.remaps, **last_place([end]),
     )  # fmt: skip
+
+
+def _how_to_join(seen: Index, readers: Sequence[End], other: Ends, sender: str) -> Cause:
+    """Return how the readers of a topic get what is sent as ``other``: by a patch, or where to look."""
+    end, senders = readers[0], nodes_of(other.publishers)
+    owner, front = seen.robot(end.name), other.name.removesuffix(end.name)
+    # The side in the wrong place is the one whose name has no robot, is below the node, or has a
+    # namespace of the other name once more in front.
+    if front != other.name and end.name.startswith(f"{front}/"):
+        hint = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
+        return Cause(hint, remaps=(Remap(sender, other.name, end.name),))
+    misplaced = owner not in ("", seen.robot(other.name)) and other.name not in EVERYBODYS
+    all_robots = misplaced and _serves_all(seen, end.name, senders)
+    if misplaced and not all_robots:
+        # That of another robot is sent there as well.
+        own = [it for it in senders if seen.robot(it) == owner] or senders
+        hint = f"pass the rule {other.name}:={end.name} to {shorten(own)}, or start it in the namespace"
+        return Cause(hint, remaps=tuple(Remap(it, other.name, end.name) for it in own))
+    if look := _where_to_look(seen, end, other, sender, all_robots):
+        return Cause(look)
+    each, set_ = " to each" if len(readers) > 1 else "", f"write {other.name} in its parameters"
+    hint = f"pass the rule {end.name}:={other.name}{each}, or "
+    hint += f"put {other.name} in shared_topics of the fleet file" if all_robots else set_
+    return Cause(hint, remaps=tuple(Remap(it.node, end.name, other.name) for it in readers))
+
+
+def _where_to_look(seen: Index, end: End, other: Ends, sender: str, all_robots: bool) -> str:
+    """Return what to do where no rule may join a topic with its reader; empty where one may."""
+    if other.type != end.type:
+        return f"make both one type: set it in a parameter of one side, or convert {other.name}"
+    alone = words.is_never_shared(seen.plain(end.name), end.type)
+    planned = seen.expected and (end.node, end.kind, end.role, end.name) in seen.expected.by_key
+    if all_robots and (alone or planned):
+        shared = "" if alone else f", or put {other.name} in shared_topics of the fleet file"
+        return f"{sender} sends it to all robots: start one for each, in its namespace{shared}"
+    if _are_stages(end, other):
+        between = "twist_mux, velocity_smoother or collision_monitor"
+        return f"start what passes {other.name} on ({between}), or give both one name"
+    if is_of_another_kind(seen, end, other):
+        return f"start what sends {end.name}: {other.name} may be of another sensor or place"
+    return ""
+
+
+def _serves_all(seen: Index, name: str, senders: Sequence[str]) -> bool:
+    """Return whether the senders are of no robot and serve all, as none has one of its own."""
+    own = (seen.of_robot(it, TOPIC, seen.plain(name)) for it in seen.robots)
+    return (
+        len(seen.robots) > 1
+        and not any(map(seen.robot, senders))
+        and not any(it and it.publishers for it in own)
+    )
 
 
 def _are_stages(end: End, other: Ends) -> bool:
@@ -266,13 +299,18 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
                 yield from _unserved_findings(seen, end, served)
 
 
-def not_managed(seen: Index, manager: str, nodes: Sequence[str], else_: str = "") -> Cause:
-    """Return how a lifecycle manager is to leave nodes out that it has in its list."""
+def not_managed(
+    seen: Index, manager: str, nodes: Sequence[str], else_: str = "", meant: str = ""
+) -> Cause:
+    """Return how a manager is to leave nodes out that it has in its list, or to list the meant one."""
     asked = (it.name for it in seen.by_node[manager] if it.name.endswith(words.CHANGE_STATE))
     listed = unique(it.removesuffix(words.CHANGE_STATE) for it in asked)
     space = manager.rpartition("/")[0] + "/"
-    names = parameter_text([it.removeprefix(space) for it in listed if it not in nodes])
+    left = (it if it not in nodes else meant for it in listed)
+    names = parameter_text([it.removeprefix(space) for it in left if it])
     hint = f"{else_}leave {shorten(nodes)} out of {words.NODE_NAMES} of {manager}"
+    if meant:
+        hint = f"write {meant} for {shorten(nodes)} in {words.NODE_NAMES} of {manager}"
     return Cause(hint, settings=(Setting(manager, words.NODE_NAMES, names),))
 
 
@@ -318,7 +356,7 @@ def _unserved_findings(seen: Index, end: End, served: _Served) -> Iterator[Findi
         )
         instead = f"; {meant} runs" if meant else ""
         wait = f"it waits for {listed} and activates nothing after it: start it"
-        cause = not_managed(seen, end.node, [listed], f"{wait}, or ")
+        cause = not_managed(seen, end.node, [listed], f"{wait}, or ", meant)
         if outside:
             moved = Remap(outside, "__ns", space)
             cause = Cause(f"{wait} in the namespace, with -r __ns:={space}", remaps=(moved,))
@@ -345,7 +383,7 @@ def _calls_in_vain(seen: Index, end: End) -> bool:
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     # A name below a node that runs is that node's own.
     below = end.name.rpartition("/")[0] in seen.node
-    common = end.type.startswith(COMMON) and not (below and end.type.startswith("std_srvs/"))
+    common = end.type.startswith(COMMON) and not end.type.startswith("std_srvs/")
     # Beside other robots it may be one that is not started yet, if it is not its own.
     own = seen.robot(end.name) if below else seen.robot(end.node)
     others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))

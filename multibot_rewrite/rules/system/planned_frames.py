@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Setting
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import Cause, caused
@@ -19,7 +19,6 @@ from multibot_rewrite.rules.system.tf_trees import (
     is_described,
     robots_on,
     sent_by_robot,
-    state_publisher,
     taken_elsewhere,
     where_set,
     why_not_received,
@@ -120,26 +119,19 @@ def _first_word(plan: Index, frame: str, robot: str) -> str:
 
 def with_more_names(
     plan: Index, seen: Index
-) -> Iterator[tuple[str, Cause, Robot, tuple[str, ...]]]:
-    """Yield message, cause, robot and frames: planned ones with the name again, or a prefix.
+) -> Iterator[tuple[str, bool, Tree, Robot, tuple[str, ...]]]:
+    """Yield message, whether the names are planned but for it, tree, robot and frames with a prefix.
 
     Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in front of
     parent and child of every transform, as it is."""
-    for _, robot, found in _strays_of_robots(plan, seen):
+    for tree, robot, found in _strays_of_robots(plan, seen):
         if names := tuple(it.frame for it in found if it.added):
             added = next(it.added for it in found if it.added)
             verb = "is" if len(names) == 1 else "are"
-            node = state_publisher(plan, robot)
-            sender = node or f"the robot_state_publisher of {robot.name}"
-            # That publisher has no odometry.
-            moving = "odom" in map(seen.plain_frame, names)
-            cause = Cause(
-                f"frame_prefix of {sender} is {added!r}, or tf_frame_prefix_enable of a controller (on"
-                " by default), on top of a rewritten description: set them to '' and false",
-                settings=(Setting(node, "frame_prefix", ""),) if node and not moving else (),
-            )
             frames = f"frame{'s' * (len(names) > 1)} {shorten(names)}"
-            yield f"{frames} {verb} planned without {added!r}", cause, robot, names
+            without = {it.removeprefix(added).lstrip("/") for it in names}
+            is_planned = without <= plan.frames_of[robot.name]
+            yield f"{frames} {verb} planned without {added!r}", is_planned, tree, robot, names
 
 
 def misnamed(plan: Index, seen: Index) -> Set[str]:

@@ -290,8 +290,12 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
 def robots_name_twice(seen: Index) -> Iterator[Finding]:
     """Report all frames of a robot and topic as one. A robot with a plan is checked by it alone."""
     told = set()
-    for message, cause, it, names in with_more_names(seen.expected, seen) if seen.expected else ():
+    more = with_more_names(seen.expected, seen) if seen.expected else ()
+    for message, is_planned, tree, it, names in more:
         told.add(it.name)
+        sent = [edge for edge in tree.edges if not {edge.child, edge.parent}.isdisjoint(names)]
+        own = [one for one in _senders_of(tree, sent) if seen.robot(one) in ("", it.name)]
+        cause = _without_prefix(own if is_planned else ())
         yield robots_name_twice.finding(message, **cause._asdict(), robot=it.name, names=names)
     for tree in seen.trees:
         doubled: dict[str, list[str]] = defaultdict(list)
@@ -322,7 +326,10 @@ def _without_prefix(nodes: Iterable[str]) -> Cause:
         to_set("frame_prefix", "", *described),
         to_set("tf_frame_prefix_enable", parameter_text(False), *driven),
     ]
-    said = " and ".join(filter(None, (it.hint for it in causes))) or "leave one of the two out"
+    said = (
+        " and ".join(filter(None, (it.hint for it in causes)))
+        or "see which prefix its senders have"
+    )
     settings = (one for it in causes for one in it.settings)
     return Cause(f"the description has the name already: {said}", settings=tuple(settings))
 

@@ -47,6 +47,11 @@ def test_reasons_with_counts(codes: tuple[str, ...], why: tuple[str, ...]) -> No
     assert of(*codes) == why
 
 
+SIMULATED = (
+    '<robot name="r"><link name="a"/><gazebo><plugin name="p" filename="{}"/></gazebo></robot>'
+)
+
+
 # What a summary says of two findings with a code.
 SAID = {
     "MB901": "2 names not understood",
@@ -107,6 +112,14 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
         ),
         # A <link> of a plugin is no link of the robot.
         (LIDAR.format("x").replace('<link name="a"/>', "<own><link>a</link></own>"), NO_LINK),
+        # webots_ros2_driver WebotsNode.cpp reads <webots>; the links are the world's.
+        (
+            '<robot name="r"><webots><plugin type="webots_ros2_driver::Ros2IMU"/></webots></robot>',
+            (),
+        ),
+        # MulticopterMotorModel.cc: below the model's name; LiftDragPlugin.cc opens what values name.
+        (SIMULATED.format("gz-sim-multicopter-motor-model-system"), ()),
+        (SIMULATED.format("libLiftDragPlugin.so"), ()),
         # Its links are those of the model that it includes (x500 of PX4).
         (LIDAR.format("x").replace('<link name="a"/>', INCLUDED), ("1 included model not read",)),
         (DRIVE.format("demo"), ()),

@@ -53,6 +53,13 @@ def test_an_argument_of_an_included_file_that_names_one_link() -> None:
     assert tool.value == ""
 
 
+def test_xacro_goes_by_the_prefix_whatever_it_is_bound_to(write: Path) -> None:
+    write.write_text(
+        written(write, TWO_NAMES.format("a", "$(arg p)")).read_text().replace("wiki/xacro", "")
+    )
+    assert set(by_name(write)) == {"p"}
+
+
 @pytest.mark.more
 def test_numbers_switches_and_words_of_a_table_take_no_name() -> None:
     arm, base = by_name(XACROS / "arm.urdf.xacro"), by_name(XACROS / "base.urdf.xacro")

@@ -790,3 +790,76 @@ def test_a_launch_file_that_is_taken_is_not_read_again_to_be_tried(
     assert main(["init", str(package), "--yes", "-q", "--force", "-o", str(file)]) == 0
     assert yaml.safe_load(file.read_text())["launch"] == "rover/launch/up.launch.py"
     assert len(started) == 2
+
+
+SPACED = """\
+<robot name="rover"><link name="base_link"/><link name="lidar"/>
+<joint name="mount" type="fixed"><parent link="base_link"/><child link="lidar"/></joint>
+<gazebo reference="lidar"><sensor name="lidar" type="gpu_lidar"><topic>{}scan</topic></sensor></gazebo>
+</robot>
+"""
+ROW = (
+    "- {ros_topic_name: scan, gz_topic_name: <inside>scan, gz_type_name: gz.msgs.LaserScan, "
+    "ros_type_name: sensor_msgs/msg/LaserScan, direction: GZ_TO_ROS}\n"
+)
+IN_SPACE = """
+def up(context):
+    space = SPACE
+    bridge = ReplaceString(PATH_OF('bridge.yaml'), {'<inside>': 'INSIDE'})
+    slam = RewrittenYaml(PATH_OF('slam.yaml'), {}, root_key=space)
+    text = open(PATH_OF('rover.urdf')).read()
+    return [GroupAction([
+        PushRosNamespace(space),
+        Node(package='robot_state_publisher', executable='robot_state_publisher',
+             parameters=[{'robot_description': text, 'frame_prefix': space + '/'}]),
+        Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'robot_description']),
+        Node(package='ros_gz_bridge', executable='parameter_bridge', name='bridge',
+             parameters=[{'config_file': bridge}]),
+        Node(package='slam_toolbox', executable='async_slam_toolbox_node', name='slam_toolbox',
+             parameters=[slam]),
+    ])]
+"""
+
+
+@pytest.mark.parametrize(
+    ("space", "argument", "inside"),
+    [
+        ("LaunchConfiguration('namespace').perform(context)", "namespace:={robot}", ""),
+        ("'tb'", "", "tb/"),
+    ],
+)
+def test_a_bringup_in_a_namespace_of_its_own(
+    space: str, argument: str, inside: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Its argument gets each robot's name; the files that it makes of others are as it makes them."""
+    folder = tmp_path / "rover"
+    folder.mkdir()
+    made = {
+        "package.xml": "<package><name>rover</name></package>",
+        "rover.urdf": SPACED.format(inside),
+        "bridge.yaml": ROW,
+        "slam.yaml": "slam_toolbox:\n  ros__parameters: {odom_frame: odom, scan_topic: scan}\n",
+        "up.launch.py": IMPORTS.replace("; ", "\n")
+        + "\nfrom nav2_common.launch import ReplaceString, RewrittenYaml\nimport os"
+        + "\nPATH_OF = lambda it: os.path.join(os.path.dirname(__file__), it)\n"
+        + IN_SPACE.replace("SPACE", space).replace("INSIDE", inside)
+        + "\ndef generate_launch_description():\n    return LaunchDescription([\n"
+        + "        DeclareLaunchArgument('namespace', default_value='tb'),\n"
+        + "        OpaqueFunction(function=up)])\n",
+    }
+    for name, text in made.items():
+        (folder / name).write_text(text)
+    fleet = tmp_path / "fleet.yaml"
+    assert main(["init", str(folder), "-o", str(fleet), "--distro", "jazzy", "--yes"]) == 0
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 0
+    said = capsys.readouterr().err
+    assert not [it for it in ("does not build", "config_file", "MB244", "MB879") if it in said]
+    assert yaml.safe_load(fleet.read_text())["launch"] == shlex.join(
+        filter(None, ("rover/up.launch.py", argument))
+    )
+    for robot in ("robot1", "robot2"):
+        (row, *_) = yaml.safe_load((tmp_path / "out" / robot / "bridge.yaml").read_text())
+        assert row["ros_topic_name"] == row["gz_topic_name"] == f"/{robot}/{inside}scan"
+        sections = str(yaml.safe_load((tmp_path / "out" / robot / "slam.yaml").read_text()))
+        above = f"'/{robot}/tb': {{'slam_toolbox'" if inside else f"'/{robot}/slam_toolbox'"
+        assert above in sections

@@ -134,9 +134,8 @@ def prefixes(names: list[str]) -> list[str]:
 
 
 def is_xacro(element: _Element) -> bool:
-    """Return whether an element is one of xacro."""
-    tag = element.tag
-    return isinstance(tag, str) and "xacro}" in tag
+    """Return whether an element is one of xacro, which goes by the prefix alone."""
+    return element.prefix == "xacro"
 
 
 def names_below(top: _Element) -> frozenset[str]:

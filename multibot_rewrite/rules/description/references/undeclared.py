@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that are used and not declared, and frames that both joints and a plugin place."""
+"""Names that are used and not declared, parts among them, and frames with two parents."""
 
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.nearest import HINTED, meant_name
+from multibot_rewrite.base.nearest import HINTED, Guesses, meant_name
 from multibot_rewrite.description.checks.audit import uses_xacro
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.references import (
@@ -23,12 +23,15 @@ from multibot_rewrite.description.checks.references import (
     undeclared_names,
     where,
 )
+from multibot_rewrite.description.readback.active import hardware_class
+from multibot_rewrite.description.rewriters.contact import collisions
 from multibot_rewrite.description.rewriters.own_defaults import frame_sites
 from multibot_rewrite.description.rewriters.renaming import must_be_declared, names_in
-from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.knowledge.worlds import SIMULATORS
 from multibot_rewrite.rules.facts.memo import lacking, level_of_absence, memoized, since_jazzy
-from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.rules.subject import Subject, name_of
 
 # Its joints are those of the simulated PROTO, not of the URDF.
 WEBOTS = "webots_ros2_control::"
@@ -165,3 +168,98 @@ def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
                 yield Problem(*place, f"did you mean {meant[name]!r}?")
             elif not claim.site.default and not name.endswith(SENT_FRAMES):
                 yield Problem(*place, "another node must publish it", level=NOTE)
+
+
+# The forms of values that are one name, and how many names a hint lists.
+_ONE_NAME, _LISTED = frozenset(("whole", "own", "member", "collision")), 3
+
+
+@rule("MB246", "undeclared-part", WARNING)
+def undeclared_part(subject: Subject) -> Iterator[Problem]:
+    """Report collisions and sensors that sensors, plugins and <ros2_control> name and nothing has."""
+    is_part = not subject.robot.links and subject.document.root.tag == "robot"
+    # An included model has names of its own.
+    if not is_part and not uses_xacro(subject.document) and not subject.elements.every("include"):
+        for found in (_of_contact_sensors, _of_plugins, _of_simulated_hardware):
+            yield from lacking(subject, found(subject))
+
+
+@memoized
+def _collisions(subject: Subject) -> Mapping[str, Mapping[str, str]]:
+    """Return by each link in the simulation its collisions' names, with the links that they are of."""
+    if subject.document.root.tag == "robot":
+        made = collisions(subject.document.root).items()
+        return {left: {name: link for (link, _), name in it.items()} for left, it in made}
+    found: dict[str, dict[str, str]] = {}
+    for it in subject.elements.every("link"):
+        names = {name_of(one): name_of(it) for one in it.iterchildren("collision")}
+        found.setdefault(name_of(it), {}).update(names)
+    return found
+
+
+@memoized
+def _simulated_sensors(subject: Subject) -> frozenset[str]:
+    every = ((it, it.getparent()) for it in subject.elements.every("sensor"))
+    own = (it for it, above in every if above is None or above.tag != "ros2_control")
+    return frozenset(map(name_of, own))
+
+
+def _of_contact_sensors(subject: Subject) -> Iterator[Problem]:
+    hinted = iter(range(HINTED))
+    for sensor in (it for it in subject.elements.every("sensor") if it.get("type") == "contact"):
+        above = sensor.getparent()
+        link = "" if above is None else above.get("reference") or name_of(above)
+        own = _collisions(subject).get(subject.robot.body.get(link, link))
+        written = sensor.findall("contact/collision") or [sensor]
+        for it in written if own is not None else ():
+            name = "" if it is sensor else text_of(it)
+            if it is not sensor and name in (own or ()):
+                continue
+            message = f"its link has no collision {name!r}: nothing is reported for it"
+            if it is sensor:
+                message = f"contact sensor {name_of(it)!r} names no collision: it reports nothing"
+            hint = _of_link(own or {}, link, name) if next(hinted, None) is not None else ""
+            yield Problem(it, message, "name" if it is sensor else "", hint)
+
+
+def _of_link(own: Mapping[str, str], link: str, value: str) -> str:
+    """Return the hint with the collisions of the link that a value begins with, or of the sensor's."""
+    name = value.rpartition("::")[2]
+    begun = {it for it in own.values() if name.startswith(it)}
+    meant = max(begun, key=len, default=link) if name else link
+    of_link = [it for it, owner in own.items() if owner == meant]
+    names = [name] if name in own else of_link or [*own]
+    return (
+        f"write {' or '.join(map(repr, names[:_LISTED]))}"
+        if names
+        else "give its link a <collision>"
+    )
+
+
+def _of_plugins(subject: Subject) -> Iterator[Problem]:
+    guesses = Guesses()
+    for claim in references(subject).doubtful:
+        site, value = claim.site, claim.value.strip()
+        if site.kinds not in (("sensor",), ("collision",)) or site.form not in _ONE_NAME:
+            continue
+        known: frozenset[str] = _simulated_sensors(subject)
+        if site.kinds == ("collision",):
+            known = frozenset().union(*_collisions(subject).values())
+        name = value.replace("::", "/").rpartition("/")[2]
+        if site.section.startswith("plugin") and name and not {value, name} & known:
+            message = f"{where(claim)} names the {site.kinds[0]} {name!r}, which is not declared"
+            yield Problem(claim.element, message, claim.attribute, guesses.hint(name, known))
+
+
+def _of_simulated_hardware(subject: Subject) -> Iterator[Problem]:
+    loaded = {it for simulator in SIMULATORS for it in simulator.hardware}
+    guesses = Guesses()
+    for system in subject.elements.tops("ros2_control"):
+        class_ = hardware_class(system)
+        for it in system.iterchildren("sensor") if class_ in loaded else ():
+            if (name := name_of(it)) not in _simulated_sensors(subject):
+                message = f"{class_} has no sensor {name!r}: its interfaces are not exported"
+                hint = guesses.hint(name, _simulated_sensors(subject))
+                # It may be one that the real robot alone has.
+                advice = hint or "name it like Gazebo's sensor, or leave it out of the simulation"
+                yield Problem(it, message, "name", advice, level="" if hint else NOTE)

@@ -17,8 +17,6 @@ from multibot_rewrite.rules.subject import Subject
 
 # With more than this many pairs of names a search for the nearest one takes too long.
 MANY = 50
-# Files of nothing else are not for urdfdom.
-WITHOUT_LINKS = frozenset(("material", "webots"))
 
 
 @rule("MB501", "several-roots", ERROR)
@@ -49,7 +47,7 @@ def no_link(subject: Subject) -> Iterator[Problem]:
     if root.tag != "robot" or subject.robot.links or subject.origins:
         return
     tags = [str(it.tag) for it in root.iterchildren("*")]
-    if not any("xacro}" in it for it in tags) and (not tags or not WITHOUT_LINKS.issuperset(tags)):
+    if {*tags} != {"material"} and not any("xacro}" in it or it == "webots" for it in tags):
         yield Problem(root, "the robot has no link")
 
 
