@@ -206,20 +206,17 @@ def _robots_of_worlds(found: Found) -> Iterator[str]:
     """Yield how to take the likeliest robot out of each world that a launch file names."""
     read = sorted(found.read, key=lambda it: -len(it.graph.nodes))
     worlds = ((path, it) for it in read for node in it.graph.nodes for path in world_files(node))
-    for path, it in worlds:
+    for path, reading in worlds:
         with suppress(InputError, OSError):
             world = read_document(read_file(path), path)
-            made = [
-                it for it in world.root.iterfind("world/model") if it.find("plugin") is not None
-            ]
-            if moving := [it for it in made if it.find("joint") is not None]:
-                robot = max(moving, key=lambda it: len([*it.iter("plugin", "sensor")]))
-                name, of = robot.get("name", ""), f"<sdf version='{world.root.get('version')}'>"
-                start, end = (world.source.count(b"\n", 0, at) + 1 for at in Spans(world).of(robot))
-                file, launch = f"{os.path.dirname(path)}/{name}.sdf", os.path.relpath(it.order.file)
+            moving = world.root.iterfind("world/model[plugin]/joint/..")
+            for it in sorted(moving, key=lambda it: -len([*it.iter("plugin", "sensor")]))[:1]:
+                name, of = it.get("name", ""), f"<sdf version='{world.root.get('version')}'>"
+                start, end = (world.source.count(b"\n", 0, at) + 1 for at in Spans(world).of(it))
                 lines = shlex.join(["sed", "-n", f"{start},{end}p", path])
-                command = f"(echo \"{of}\"; {lines}; echo '</sdf>') > {shlex.quote(file)}"
-                again = shlex.join(["multibot", "init", file, "--launch", launch])
+                words = ["multibot", "init", f"{os.path.dirname(path)}/{name}.sdf", "--launch"]
+                command = f"(echo \"{of}\"; {lines}; echo '</sdf>') > {shlex.quote(words[2])}"
+                again = shlex.join([*words, os.path.relpath(reading.order.file)])
                 told = f"model {name!r} of {os.path.basename(path)} moves"
                 yield f"{told}: give it a file of its own, {command}; {again}"
 
