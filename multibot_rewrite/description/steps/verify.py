@@ -182,7 +182,10 @@ def same_targets(it: Evidence) -> None:
         seen.add(pair)
         kept = {at for at, name in enumerate(names) if (name.kind, name.text) in own} if own else ()
         kinds = _kinds(now, kept)
-        lost = any(_lost_its_target(name, it.inventory) for name in now) if "" in kinds else False
+        # Of what refers to nothing now, a declared name is one that did before.
+        unused = (name for name in now if not name.kind) if "" in kinds else ()
+        declared = it.inventory.declared
+        lost = any(one.text in declared.get(kind, ()) for one in unused for kind in one.kinds)
         if lost or kinds != _kinds(names, kept):
             raise ProofError(f"{file}: {new.value!r} does not name what it named before")
 
@@ -195,11 +198,6 @@ def _kinds(names: Names, kept: Collection[int]) -> list[str]:
         "frame" if at in kept and name.kind in FRAME_KINDS else name.kind
         for at, name in enumerate(names)
     ]
-
-
-def _lost_its_target(name: ResolvedName, inventory: Inventory) -> bool:
-    """Return whether this name refers to nothing now, although it did before."""
-    return not name.kind and any(name.text in inventory.declared.get(it, ()) for it in name.kinds)
 
 
 def robots_own(it: Evidence) -> None:
