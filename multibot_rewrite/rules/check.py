@@ -101,10 +101,10 @@ def _without_unjoined_maps(seen: Index, found: Sequence[Finding]) -> list[Findin
 
 
 def _without_their_senders(found: Sequence[Finding]) -> list[Finding]:
-    """Return the findings without those about a sender whose reader has one for the same names."""
-    missed = {frozenset(it.names) for it in found if it.code == topic_names_miss.code}
+    """Return the findings without those about a sender whose reader has one for the same topic."""
+    missed = {name for it in found if it.code == topic_names_miss.code for name in it.names[1:]}
     sender = command_to_nobody.code
-    return [it for it in found if it.code != sender or frozenset(it.names) not in missed]
+    return [it for it in found if it.code != sender or it.names[0] not in missed]
 
 
 def contradictions(seen: Index) -> list[Finding]:

@@ -147,9 +147,9 @@ def test_two_processes_of_one_program_are_told_apart() -> None:
 
 
 def test_a_bridge_is_there_if_its_topics_are_bridged() -> None:
-    rows = ("/scan@a[b", "/imu@a[b")
+    rows, rules = ("/lidar@a[b", "/imu@a[b"), (("lidar", "scan"),)
     vendor = [
-        Process("ros_gz_bridge", "parameter_bridge", words=rows),
+        Process("ros_gz_bridge", "parameter_bridge", words=rows, rules=rules),
         Process("ros_gz_bridge", "parameter_bridge", words=("/clock@a[b",)),
     ]
     names = [f"/{robot}/scan" for robot in ROBOTS]
