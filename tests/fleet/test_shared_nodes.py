@@ -12,10 +12,7 @@ from plans import own
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.checks.build import make_outputs
-from multibot_rewrite.checks.closed_plan import closed_plan
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import make_plan
 from multibot_rewrite.system.records import System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -177,20 +174,3 @@ def test_what_plugins_of_a_classic_world_send_is_shared(tmp_path: Path) -> None:
     files = {"fleet.yaml": fleet, "w.world": world, "go.launch.py": launch, "rows.yaml": rows}
     read, _ = shared_of(tmp_path, **files)
     assert {it for it in read if not it.startswith("/robot1/")} == {"/model/box/pose"}
-
-
-def test_what_a_shared_node_sends_is_not_moved_to_a_robot(tmp_path: Path) -> None:
-    """A build judges one robot at a time: it has to know who sends for all."""
-    box = "{/box: geometry_msgs/msg/PoseStamped}"
-    (tmp_path / "nodes.yaml").write_text(
-        f"nodes:\n  boxes: {{package: acme, publishes: {box}}}\n"
-        f"  picker: {{package: acme, subscribes: {box.replace('/box', 'box')}}}\n"
-        "node_sets: {acme: {nodes: [boxes, picker]}}\n"
-    )
-    file = tmp_path / "fleet.yaml"
-    text = FLEET.format(layout="tf-per-robot", rover=ROVER, shared="boxes")
-    file.write_text(text.replace("node_sets: nav2", "node_sets: acme\nnodes: nodes.yaml"))
-    # The plan itself shares the topic.
-    plan = make_plan(read_fleet(str(file), "", {}))
-    (found,) = (it for it in closed_plan(plan).gaps if it.code == "MG303")
-    assert found.hint.startswith("pass the rule /robot1/box:=/box, or put /box in shared_topics")

@@ -44,7 +44,7 @@ REMEMBERED = (
     parameter_files._sections,
     handed_on.document_of,
     handed_on.has_sections,
-    bridges._rows_of_text,
+    bridges.rows_of_text,
     fnmatch._compile_pattern,  # type: ignore[attr-defined]
 )
 # As much may be made once, and found again by halving.

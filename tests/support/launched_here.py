@@ -26,7 +26,14 @@ from multibot_rewrite.producers.launch.records import (
     orders_of,
 )
 from multibot_rewrite.producers.launch.source_packages import link_sources
-from multibot_rewrite.producers.launch.stand_in import actions, parameters, ros, standing_in, values
+from multibot_rewrite.producers.launch.stand_in import (
+    actions,
+    packages,
+    parameters,
+    ros,
+    standing_in,
+    values,
+)
 
 # Each with its method that is replaced.
 _CHANGED = (
@@ -36,6 +43,7 @@ _CHANGED = (
     (parameters.ParameterFile, "evaluate"),
     (values.Command, "perform"),
     (values.FindExecutable, "perform"),
+    (packages.ExecutableInPackage, "perform"),
 )
 
 
