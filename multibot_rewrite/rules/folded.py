@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from itertools import product
 
 from multibot_rewrite.base.bounded import own_rows
+from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import (
     ERROR,
     INCONCLUSIVE,
@@ -96,6 +97,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
     "described robots": _robots_of_description,
     "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
+    "a map": lambda seen, it: ("" for x in it.names if seen.plain_frame(x) in WORLD_FRAMES),
     "a frame": lambda seen, it: ("" for x in it.names[:1] if not x.startswith("/")),
     "a tf topic": lambda seen, it: ("" for x in _ends(seen, it.names) if x.type == TF),
     "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),
@@ -249,7 +251,10 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
 def _users(seen: Index, it: Finding) -> Sequence[str]:
     """Return the nodes that have the names that a finding is about, or send its frames."""
     own = (x for name in it.names for x in _frame_senders(seen)[name] if seen.robot(x) == it.robot)
-    return unique((it.node, *(end.node for end in _ends(seen, it.names)), *own))
+    # Of a node that is missing, those of what it has to give.
+    gone = () if it.node in seen.node else _planned_ends(seen, it)
+    names = (*it.names, *(x.name for x in gone if x.role in GIVES and x.type != TF))
+    return unique((it.node, *(end.node for end in _ends(seen, names)), *own))
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:

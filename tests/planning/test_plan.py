@@ -179,6 +179,7 @@ def test_a_static_transform_may_have_the_robots_name_already() -> None:
     ("frames", "condition", "root", "edges"),
     [
         ("odom base", "", "", [("odom", "base")]),
+        ("/odom /base", "", "", [("odom", "base")]),
         ("odom base", "", "root", [("odom", "root")]),
         ("odom base given", "", "root", [("odom", "base")]),
         ("map my_odom", "", "", [("map", "my_odom")]),
