@@ -62,10 +62,10 @@ def one_for_a_cause(
     new = {*unplanned_nodes(plan, seen)} - {*matches(plan, seen).values()}
     kept = []
     for at, it in enumerate(left):
-        names = {*it.names} if at not in causes and _is_absence(it, rules) else set()
         # What a node gives that is no planned one is of that node's making.
-        if not new.isdisjoint(x.node for x in unplanned_ends_of(seen, it) if x.role in GIVES):
-            names = set()
+        own = new & {x.node for x in unplanned_ends_of(seen, it) if x.role in GIVES}
+        is_lost = at not in causes and not own and _is_absence(it, rules)
+        names = {*it.names} if is_lost else set()
         if not (names & lost or (names and names <= loose)):
             kept.append(said.get(at, it))
     every = {*unexplained([*kept, *by_plan])}
