@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from itertools import product
 
 from multibot_rewrite.base.bounded import own_rows
+from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import (
     ERROR,
     INCONCLUSIVE,
@@ -96,6 +97,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
     "described robots": _robots_of_description,
     "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
+    "a map": lambda seen, it: ("" for x in it.names if seen.plain_frame(x) in WORLD_FRAMES),
     "a frame": lambda seen, it: ("" for x in it.names[:1] if not x.startswith("/")),
     "a tf topic": lambda seen, it: ("" for x in _ends(seen, it.names) if x.type == TF),
     "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),

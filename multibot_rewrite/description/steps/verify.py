@@ -83,7 +83,9 @@ def verify(
     file = inventory.document.file
     beside = renamed_names(urdf_declarations, naming, robot)
     # Byte offsets of elements are needed only if more than affixes has to be removed.
-    asks_places = MARKER in output or bool(naming.own) or _replaces_text(plan)
+    asks_places = (
+        MARKER in output or bool(naming.own) or any(edit.start < edit.end for edit in plan.edits)
+    )
     try:
         read = read_document(output, f"{file} for {robot}", asks_places)
         result = collect(read, tree, beside, naming.read_as)
@@ -119,10 +121,6 @@ def _names_as_in_source(
         kinds = claim.site.kinds
         found.append((ResolvedName(0, claim.value, kinds[0], kinds),) if below else names)
     return found
-
-
-def _replaces_text(plan: Plan) -> bool:
-    return any(edit.start < edit.end for edit in plan.edits)
 
 
 def same_names(it: Evidence) -> None:
@@ -298,7 +296,8 @@ def strips_to_source(it: Evidence) -> None:
     """Check that undoing the rewrite, by the output alone, gives the input back."""
     own = strip.own_places(it.inventory, it.naming)
     fills = any(marker.filled for marker in it.markers)
-    if not (_undoes(it, own) if own or fills or _replaces_text(it.plan) else _adds_affixes(it)):
+    replaces = any(edit.start < edit.end for edit in it.plan.edits)
+    if not (_undoes(it, own) if own or fills or replaces else _adds_affixes(it)):
         raise ProofError(
             f"{it.file}: stripping {it.robot} from the output does not give the input back"
         )

@@ -254,7 +254,7 @@ def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) 
 def under_plugin(
     node: NodeFacts, rules: Iterable[RemapRule], release: str, alone: bool
 ) -> NodeFacts:
-    """Return a controller under its plugin's rules that reach it; ``alone``: without usual ones."""
+    """Return a controller under its plugin's rules, if these reach it; ``alone``: not usual ones."""
     if not (node.is_controller and controller_way(release).of_manager):
         return node
     above, _, own = node.name.rpartition("/")

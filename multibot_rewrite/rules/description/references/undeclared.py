@@ -205,9 +205,10 @@ def _simulated_sensors(subject: Subject) -> frozenset[str]:
 
 def _of_contact_sensors(subject: Subject) -> Iterator[Problem]:
     hinted = iter(range(HINTED))
+    by = "reference" if subject.document.root.tag == "robot" else "name"
     for sensor in (it for it in subject.elements.every("sensor") if it.get("type") == "contact"):
         above = sensor.getparent()
-        link = "" if above is None else above.get("reference") or name_of(above)
+        link = "" if above is None else above.get(by, "")
         own = _collisions(subject).get(subject.robot.body.get(link, link))
         # Without a <collision> its name is the default, which nothing has.
         asked = {text_of(it): it for it in sensor.iterfind("contact/collision")} or {"": sensor}
