@@ -47,12 +47,9 @@ def _robots(nodes: Sequence[LaunchedNode]) -> tuple[str, ...]:
     Otherwise those that one line of a launch file starts, each beside a spawner."""
     published = {_home(it): it.place for it in nodes if it.package == STATE_PUBLISHER}
     spawned = {_home(it) for it in nodes if program_of(it) in programs().spawners}
-    keys = (
-        ((_NUMBER.sub("", home), *([place] if home in spawned else [])), home)
-        for home, place in published.items()
-        if home
-    )
-    alike = lists_by_key((key, home) for every, home in keys for key in every)
+    named = ((_NUMBER.sub("", home), home) for home in published if home)
+    beside = ((place, home) for home, place in published.items() if home in spawned - {""})
+    alike = lists_by_key((*named, *beside))
     return next((tuple(it) for it in alike.values() if len(it) > 1), ())
 
 
