@@ -182,7 +182,7 @@ class NodeFacts(NamedTuple):
     for a robot none of whose files has any. ``prefix_switch`` is a parameter: unless it is false,
     the node puts its namespace before its frames. ``is_known`` is false for a node that nobody
     knows: its ends are those that its remap rules name. ``untold`` is what its source does not
-    tell."""
+    tell. ``together`` are the nodes that its program always makes, where it makes several."""
 
     name: str
     package: str
@@ -213,6 +213,7 @@ class NodeFacts(NamedTuple):
     by_sensor: tuple[tuple[str, tuple[tuple[str, str | float], ...]], ...] = ()
     is_known: bool = True
     untold: tuple[Untold, ...] = ()
+    together: tuple[str, ...] = ()
 
     @property
     def kind(self) -> str:

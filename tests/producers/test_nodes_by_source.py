@@ -118,6 +118,16 @@ def test_what_rclpy_opens(program: str, told: bool) -> None:
         assert facts.untold or run.fact.endpoints
 
 
+@pytest.mark.parametrize(("program", "told"), [("several", 1), ("plain", 0), ("decided", 0)])
+def test_a_name_is_for_all_nodes_of_the_process(
+    program: str, told: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    launch = tmp_path / "one.launch.xml"
+    launch.write_text(f'<launch><node pkg="own_nodes" exec="{program}" name="x"/></launch>')
+    main(["check-launch", str(launch), "--roots", str(OWN.parent)])
+    assert capsys.readouterr().out.count("MG730 name= renames every node") == told
+
+
 EXPECTED: dict[str, set[str]] = {
     "by_parameters": {
         *("/scan", "/front/image_raw", "/wheels/front/speed", "/wheels/front/torque"),

@@ -712,6 +712,27 @@ def test_a_file_of_which_nothing_matches(
 
 
 @pytest.mark.parametrize(
+    ("section", "node", "hint"),
+    [
+        ("planer_server", "planner_server", "write /planner_server:"),
+        ("Planner_Server", "planner_server", "write /planner_server:"),
+        # Another known node, another side, another number, and one that has its section.
+        ("map_saver", "map_server", ""),
+        ("front_left_motor_controller", "front_right_motor_controller", ""),
+        ("driver_2", "driver_1", ""),
+        ("amlc", "amcl", ""),
+    ],
+)
+def test_a_section_whose_name_is_nearly_a_node_s(
+    section: str, node: str, hint: str, known: Knowledge
+) -> None:
+    text = yaml.safe_dump({it: {"ros__parameters": {"a": 1}} for it in ("amcl", section)})
+    given = {"parameters": of_file(text)}
+    nodes = started("nav2_amcl", "amcl", "amcl", **given), started("acme", "it", node, **given)
+    assert [it.hint for it in judged(known, "MB244", *nodes)] == [hint] * bool(hint)
+
+
+@pytest.mark.parametrize(
     ("section", "told"),
     # launch_ros to_parameters_list.py joins a section to a component as rclcpp does, since 0.19.10
     # (Humble), 0.26.8 (Jazzy) and 0.28.2 (Kilted).

@@ -253,13 +253,14 @@ def _bridged(process: Process, left: Sequence[Process], robots: Sequence[str]) -
 
 def topics(process: Process) -> Iterator[str]:
     """Return the ROS topics that a bridge is told: in its words, its file or its parameters."""
-    renamed = dict(process.rules)
+    renamed = {_whole(process, old): new for old, new in process.rules}
+    names = list(process.parameters.get(BRIDGED, ()))
     for word in process.words:
         name = word.partition("@")[0]
         is_image = process.program == IMAGES and word[:1] != "-"
         if name and ("@" in word or is_image):
-            yield _whole(process, renamed.get(name, name))
-    for name in process.parameters.get(BRIDGED, ()):
+            names.append(name)
+    for name in (_whole(process, it) for it in names):
         yield _whole(process, renamed.get(name, name))
 
 

@@ -338,12 +338,10 @@ def _snapshot(
         round(seconds, 2),
         tuple(caveats),
     )
-    tf = ears.tf
-    edges = assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates(), tf.ages)
     return System(
         tuple(nodes),
         placed,
-        tuple(edges),
+        tuple(ears.tf.edges(placed)),
         around,
         heard,
         descriptions=descriptions,

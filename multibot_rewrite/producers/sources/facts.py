@@ -129,6 +129,7 @@ def _node_source(
     """Return what a program does: endpoints, parameters, transforms, and what is left open."""
     named = [it for it in events if isinstance(it, Named)]
     plain = dict.fromkeys(it.name for it in named if not check_node_name(it.name))
+    always = dict.fromkeys(it.name for it in named if it.name in plain and not it.asked)
     word = program.rpartition("::")[2].removesuffix(".py")
     made = [it for it in events if isinstance(it, Declared)]
     every = dict.fromkeys(end for it in made for end in _endpoints(names, it, release))
@@ -175,6 +176,7 @@ def _node_source(
         programs=() if start.class_ else (program,),
         component=program if start.class_ else "",
         untold=tuple(_untold(read, named, plain, events, ends)),
+        together=tuple(always) if len(always) > 1 else (),
     )
     return NodeSource(facts, params, named_frames, read.files)
 

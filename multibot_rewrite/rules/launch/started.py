@@ -92,14 +92,16 @@ no_manager = spawners.NO_MANAGER._replace(
 
 @launch_rule("MG730", "name-of-a-whole-process", distro="humble")
 def names_all(launched: Launched) -> Iterator[Finding]:
-    """Yield the managers that load controllers and get a name, which renames all of them."""
+    """Yield the nodes that get a name which all nodes of their process get with it."""
     given = {(it.place, it.name) for it in launched.graph.nodes}
     for run in (it for it in launched.nodes if (it.place, it.name) in given):
-        others = {it.name for it in launched.spawned if it.manager == run.full_name}
-        if others and names_its_process(run.fact.known, launched.release):
+        hint, others = "leave name= out: its code names each node", {*run.fact.together}
+        if names_its_process(run.fact.known, launched.release):
+            hint = "leave name= out: its code calls it controller_manager"
+            others = {it.name for it in launched.spawned if it.manager == run.full_name}
+        if others:
             who = shorten(sorted(others))
             message = f"name= renames every node of the process: {who} become {run.node}"
-            hint = "leave name= out: its code calls it controller_manager"
             yield at(names_all, run.place, message, hint)
 
 

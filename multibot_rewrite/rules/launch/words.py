@@ -20,7 +20,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
+from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest, slip_of
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
@@ -145,6 +145,7 @@ def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
         named |= {*names} if node.name else set()
         for it in (one for one in node.parameters if one.file and names):
             readers[it.file, it.text] |= dict.fromkeys(names)
+    known = built_in(launched.release).nodes
     found: dict[Place, tuple[str, list[str]]] = {}
     for (file, text), own in readers.items():
         names = [*own]
@@ -152,6 +153,7 @@ def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
             sections = raw_sections(document_of(file, text))
             by_word = lists_by_key((last_word(it.path), it) for it in sections)
             wild = [it.path for it in sections if "*" in it.path]
+            unread = [it for it in by_word if it not in nodes and it not in known]
             reaching = any(is_for(path, node) for path in wild for node in every)
             lost = named.issuperset(names) and not (reaching or by_word.keys() & nodes.keys())
             if sections and lost:
@@ -167,11 +169,21 @@ def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
                 yield told._replace(names=(*names,))
             for reader in names:
                 word = last_word(reader)
-                if section := meant_for(by_word.get(word, ()), reader, nodes.get(word, ())):
+                section = meant_for(by_word.get(word, ()), reader, nodes.get(word, ()))
+                if not lost and reader in named and word not in by_word:
+                    section = next(iter(by_word.get(_mistyped(word, unread), ())), None)
+                if section:
                     place = Place(file, line_of(section.keys[0]))
                     found.setdefault(place, (section.path, []))[1].append(reader)
     for place, (path, names) in found.items():
         yield at(of_no_node, place, *section_message(path, names))
+
+
+def _mistyped(word: str, others: list[str]) -> str:
+    """Return the name that is ``word`` but for a letter or two or its case, as left is not right."""
+    near = slip_of(word, others)
+    begins = [[part[:1].casefold() for part in it.split("_")] for it in (word, near)]
+    return near if begins[0] == begins[1] and not differ_in_numbers(word, near) else ""
 
 
 of_no_node = OF_NO_NODE._replace(check=_sections_of_no_node)
