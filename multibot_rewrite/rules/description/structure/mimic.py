@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 
 from lxml.etree import _Element
@@ -166,19 +167,28 @@ _COMMAND, _STATE = "command_interface", "state_interface"
 _NUMBERS = frozenset(("min", "max", "initial_value"))
 # Of a limit; numbers are rounded.
 _SLACK = 1.02
-_WHOLE = {"rw_rate": "a whole number of hertz", "thread_priority": "a whole number"}
+_BOOL = "(?i:true|false)", "true or false"
+# Attribute -> how it is read (component_parser.cpp, lexical_casts.cpp, hardware_info.hpp).
+_READ_AS = {
+    "rw_rate": ("[0-9]+", "a whole number of hertz"),
+    "thread_priority": ("[0-9]+", "a whole number"),
+    "is_async": _BOOL,
+    "mimic": _BOOL,
+    "data_type": ("double|bool|float32|u?int(8|16|32)", "double, bool, float32, int32 or uint8"),
+}
 
 
 def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
-    """Report rates and limits of <ros2_control> that are no numbers."""
+    """Report attributes and limits of <ros2_control> that its parser cannot read."""
     for system in subject.elements.tops("ros2_control"):
-        for name, words in _WHOLE.items():
-            text = system.get(name, "0")
-            if not text.isdigit() and "$" not in text:
-                message = f"{name} is {text!r}, not {words}"
-                yield Problem(system, message, name, level=NOTE if since_jazzy(subject) else "")
-        parts = system.iterchildren("joint", "gpio", "sensor")
-        interfaces = (it for part in parts for it in part.iterchildren(_COMMAND, _STATE))
+        parts = [*system.iterchildren("joint", "gpio", "sensor")]
+        interfaces = [it for part in parts for it in part.iterchildren(_COMMAND, _STATE)]
+        for it in (system, *parts, *interfaces):
+            for name, text in it.items():
+                pattern, words = _READ_AS.get(name, (".*", ""))
+                if "$" not in text and not re.fullmatch(pattern, text.strip()):
+                    message = f"{name} is {text!r}, not {words}"
+                    yield Problem(it, message, name, level=NOTE if since_jazzy(subject) else "")
         for it in (param for one in interfaces for param in one.iterchildren("param")):
             text = text_of(it)
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
