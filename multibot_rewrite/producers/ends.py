@@ -26,6 +26,7 @@ from multibot_rewrite.related_files.bridge import (
     GZ,
     ROS,
     SERVICE as SERVICE_ROW,
+    as_loaded,
     below,
 )
 from multibot_rewrite.related_files.yaml_text import YamlText, items, line_of, pairs
@@ -92,7 +93,7 @@ def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
 
 def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
     """Yield the rows of a ros_gz_bridge file in a namespace; one of both directions has no role."""
-    for row in items(document.root):
+    for row in items(as_loaded(document).root):
         values = {key.value: value for key, value in pairs(row)}
         # A row with one name has it on both sides (ros_gz_bridge bridge_config.cpp).
         service = values.get(SERVICE_ROW)
