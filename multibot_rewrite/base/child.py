@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from multibot_rewrite.base.start import module as start
 
 _START = os.path.abspath(start.__file__)
+# A collection would write to every page that a fork shares with its parent.
 _ISOLATED = (
     "import gc, json, sys; gc.disable(); sys.path[:] = json.loads(sys.argv[1]);"
     " from {} import main; main()"
@@ -34,7 +35,6 @@ _ALONE = {
     "GIT_ALLOW_PROTOCOL": "",
 }
 _FILTERS = r"^filter\..*\.(clean|smudge|process|required)$"
-_NO_FILTER = {"required": "false"}
 
 
 def python(module: str, *words: str) -> list[str]:
@@ -72,7 +72,7 @@ def git(where: str, *words: str, given: bytes = b"") -> bytes:
         listed = b""
     names = filter(None, os.fsdecode(listed).split("\0"))
     # The filters are switched off: git would run them on each file that it compares.
-    filters = {it: _NO_FILTER.get(it.rpartition(".")[2], "") for it in names}
+    filters = {it: "false" if it.endswith(".required") else "" for it in names}
     return _git(where, filters, words, given)
 
 

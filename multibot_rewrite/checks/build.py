@@ -37,7 +37,6 @@ from multibot_rewrite.fleet.outputs.output_file import (
 from multibot_rewrite.fleet.outputs.params_style import check_style, in_style
 from multibot_rewrite.fleet.outputs.related_files import related_files
 from multibot_rewrite.fleet.outputs.rviz_outputs import (
-    RVIZ,
     opened_of,
     rviz_files,
     rviz_outputs,
@@ -52,6 +51,7 @@ from multibot_rewrite.fleet.outputs.zenoh_configuration import (
     free_fleet_files,
 )
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
+from multibot_rewrite.fleet.robots.robot_nodes import RVIZ
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.planning.domain_bridge import bridge_files
 from multibot_rewrite.planning.enclaves import to_policy

@@ -14,7 +14,7 @@ from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
-from multibot_rewrite.fleet.outputs.rviz_outputs import RVIZ, why_for_each
+from multibot_rewrite.fleet.robots.robot_nodes import RVIZ, why_for_each
 from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.proposal.launches import said_of
 
@@ -57,8 +57,10 @@ def _rows_of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -
         shared = not names.isdisjoint(file.shared_nodes)
         why = "shared_nodes names it" if shared else once_for_all(it)
         why = why if names.isdisjoint(file.own_nodes) else ""
-        config = next(iter(robot.related_files.get("rviz", ())), "") if RVIZ in names else ""
-        apart = why_for_each(config, make_naming(**file.policy).layout.name) if config else ""
+        config = next(iter(robot.related_files.get("rviz", ())), "")
+        apart = (
+            why_for_each(config, make_naming(**file.policy).layout.name) if RVIZ in names else ""
+        )
         files = (os.path.relpath(one.source) for one in it.parameters if one.source)
         place = f"{os.path.relpath(it.place.file)}:{it.place.line}"
         reason = apart or why or it.later

@@ -82,7 +82,7 @@ def graph(
         from multibot_rewrite.producers.bags.recording import as_snapshot
 
         return as_snapshot(read_bag(options.bag))
-    asked = (request or Request(options.timeout or LOOK_SECONDS))._replace(headers=True)
+    asked = request or Request(options.timeout or LOOK_SECONDS)
     looking = f"looking at the graph, for {asked.timeout:g} s at most"
     with shown(looking) as show:
         if options.zenoh:
@@ -171,7 +171,7 @@ def watched(
     # With ``--state`` it has the nodes' answers, also about ``parameters``.
     gc.enable()  # no short process any more
     asks = dict(parameters) if options.state else None
-    asked = Request(options.timeout or inf, watch=True, headers=True, asks=asks)
+    asked = Request(options.timeout or inf, watch=True, asks=asks)
     environs = {it: environ(it) for it in domains} or {0: environ(options.domain)}
     if options.zenoh:
         from multibot_rewrite.producers.zenoh import observe

@@ -118,15 +118,9 @@ def make_plan(
             it.spec.namespace for it in robots if evidence[node_sources(it.spec)].is_placed
         )
         fleet = fleet._replace(clocks=clocks, apart=file.apart, models=models, placed=by_nodes)
-        of_world = nodes_of_world(file, {*map(_name_in_description, robots)})
-        table = fleet.table._replace(runs=(*fleet.table.runs, *of_world))
+        table = fleet.table._replace(runs=(*fleet.table.runs, *nodes_of_world(file)))
         fleet = with_relays(fleet._replace(table=table), file)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
-
-
-def _name_in_description(robot: RewrittenRobot) -> str:
-    """Return what a robot's description calls it."""
-    return next((it.get("name", "") for it in robot.member.source.root.iter("robot", "model")), "")
 
 
 def _evidence(

@@ -148,7 +148,7 @@ def system_of_graph(
 
     around = dict(os.environ) | ({} if domain is None else {"ROS_DOMAIN_ID": str(domain)})
     settings(around)
-    seen = observe(Request(seconds, headers=True), around)
+    seen = observe(Request(seconds), around)
     asked = [*questions(seen)] if states else []
     return with_answers(seen, ask(asked, ANSWER_SECONDS, around) if states else (), asked)
 

@@ -114,7 +114,9 @@ def _in_descriptions(launched: Launched) -> Iterator[Finding]:
     for it in launched.models.found:
         file, data = file_of(launched.graph, it.text), it.text.encode()
         settings = Settings(distro=launched.release, ros=ROS_2, simulated=it.spawned)
-        found = lint_data(file or _path_next_to(it.place, "robot.urdf"), data, settings, may_stop)
+        # Descriptions of its package are found from a name beside the launch file.
+        beside = os.path.join(os.path.dirname(it.place.file), "robot.urdf")
+        found = lint_data(file or beside, data, settings, may_stop)
         if found:
             told = in_use(found, read_document(data, file), it.spawned)
             yield from (one if file else _at_launch(one, it.place) for one in told)
@@ -162,15 +164,10 @@ def _in_values(launched: Launched) -> Iterator[Finding]:
         given = _own_parameters(it) if running else {}
         if running and given:
             text = yaml.safe_dump({running.full_name: {"ros__parameters": given}}, sort_keys=False)
-            beside = _path_next_to(it.place, "launch.yaml")
+            beside = os.path.join(os.path.dirname(it.place.file), "launch.yaml")
             for one in lint_data(beside, text.encode(), settings):
                 level = WARNING if one.level == NOTE else one.level
                 yield one._replace(level=level, file=it.place.file, line=it.place.line, column=1)
-
-
-def _path_next_to(place: Place, name: str) -> str:
-    """Return a name for a text in a launch file: descriptions of its package are found from it."""
-    return os.path.join(os.path.dirname(place.file), name)
 
 
 def _own_parameters(it: LaunchedNode) -> dict[str, object]:

@@ -89,9 +89,9 @@ def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> It
         if host is not None:
             # The code of a host that places the node itself (a costmap) asks nobody for either.
             space, other = f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
-        ends = dict.fromkeys(_stub_endpoint(*it, types) for it in own)
+        ends = {_stub_endpoint(end, name, types): name for end, name in own}
         arguments = tuple(ros_arguments(space, other, _rules_with_handed_on(node, own)))
-        stub = node._replace(arguments=arguments, names=tuple((it, "") for it in ends))
+        stub = node._replace(arguments=arguments, names=tuple(ends.items()))
         yield stub, edges.get((node.robot, node.node), ())
 
 
@@ -151,14 +151,14 @@ def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
     process."""
     processes: dict[int, list[Stub]] = defaultdict(list)
     process_of: dict[str, int] = {}
-    types: dict[tuple[int, str, str], str] = {}
+    types: dict[tuple[int, str], str] = {}
     for stub in nodes:
         robot = stub[0].robot
         process = process_of.setdefault(robot, len(process_of) % PROCESSES)
-        own = {it.name: it.type for it, _ in stub[0].names if it.kind == TOPIC}
-        while any(types.get((process, robot, it), own[it]) != own[it] for it in own):
+        own = {name or it.name: it.type for it, name in stub[0].names if it.kind == TOPIC}
+        while any(types.get((process, it), own[it]) != own[it] for it in own):
             process += PROCESSES
-        types |= {(process, robot, name): type_ for name, type_ in own.items()}
+        types |= {(process, name): type_ for name, type_ in own.items()}
         processes[process].append(stub)
     return list(processes.values())
 

@@ -154,19 +154,18 @@ def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
     With namespaces targets are relative, so the rule is the same for every robot; a relative name that
     all robots share would be each robot's own without a rule.
     """
-    bare = name.strip("/")
     if name.startswith("~"):
         return ""
-    if bare in naming.shared_topics:
-        below = naming.topics == NAMESPACE and not name.startswith("/")
-        return f"/{bare}" if below else ""
-    if naming.topics == NAMESPACE:
-        return bare if name.startswith("/") else ""
     # An action's parts and an image's transports are found from the one name alone.
     base, action, part = name.partition("/_action/")
     rest = action + part
     if not action and name.rpartition("/")[2] in TRANSPORTS:
         base, slash, last = name.rpartition("/")
         base, rest = (base, slash + last) if base else (name, "")
+    if not naming.shared_topics.isdisjoint((name.strip("/"), base.strip("/"))):
+        below = naming.topics == NAMESPACE and not name.startswith("/")
+        return f"/{name.rstrip('/')}" if below else ""
+    if naming.topics == NAMESPACE:
+        return name.strip("/") if name.startswith("/") else ""
     target = spelled(naming, robot, SERVICE if kind == SERVICE and not rest else TOPIC, base)
     return target + rest if target != base else ""

@@ -125,7 +125,8 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
 
     With ``root`` that frame is the child, except for odometry frames and those that a file sets.
     """
-    values = {frame.parameter: frame.default for frame in node.frames}
+    # tf2 takes a slash in front away (buffer_core.cpp, stripSlash).
+    values = {frame.parameter: frame.default.lstrip("/") for frame in node.frames}
     given = {frame.parameter for frame in node.frames if frame.given}
     static = _is_static(node)
     for parent, child, _, fixed in (it for it in node.sends if holds(it.condition, values.get)):

@@ -17,7 +17,7 @@ from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.outputs.rviz_outputs import RVIZ, why_for_each
+from multibot_rewrite.fleet.robots.robot_nodes import RVIZ, why_for_each
 from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.proposal.launches import Bringup, Row, order_text, said_of
 from multibot_rewrite.proposal.looking import Looked

@@ -3,19 +3,24 @@
 
 import os
 import shlex
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from typing import NamedTuple
 
 from multibot_rewrite.base.left_out import marked_folders
-from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.apply import Spans
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER
+from multibot_rewrite.producers.launch.launched import world_files
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import ROOTS
 from multibot_rewrite.proposal.bringup import Robot, bringup_as_named, bringup_of
@@ -174,6 +179,7 @@ def _likeliest(
         hint = "give a URDF, xacro or SDF"
         if ignored := [it for folder in found.folders for it in marked_folders(folder)]:
             hint = f"marked to be ignored: {shorten(ignored)}; name that folder"
+        hint = next(_robots_of_worlds(found), hint)
         raise UsageError(f"{where}: no description of a robot is there; {hint}")
     best = chosen(usable, found)
     likeliest = best.order[0]
@@ -194,6 +200,25 @@ def _likeliest(
     )
     broken = {it.path: it.fault.removeprefix(f"{it.path}: ") for it in unread}
     return Seen(found, [first, *order[1:]], False, rivals, [*left, *alike], broken)
+
+
+def _robots_of_worlds(found: Found) -> Iterator[str]:
+    """Yield how to take the likeliest robot out of each world that a launch file names."""
+    read = sorted(found.read, key=lambda it: -len(it.graph.nodes))
+    worlds = ((path, it) for it in read for node in it.graph.nodes for path in world_files(node))
+    for path, reading in worlds:
+        with suppress(InputError, OSError):
+            world = read_document(read_file(path), path)
+            moving = world.root.iterfind("world/model[plugin]/joint/..")
+            for it in sorted(moving, key=lambda it: -len([*it.iter("plugin", "sensor")]))[:1]:
+                name, of = it.get("name", ""), f"<sdf version='{world.root.get('version')}'>"
+                start, end = (world.source.count(b"\n", 0, at) + 1 for at in Spans(world).of(it))
+                lines = shlex.join(["sed", "-n", f"{start},{end}p", path])
+                words = ["multibot", "init", f"{os.path.dirname(path)}/{name}.sdf", "--launch"]
+                command = f"(echo \"{of}\"; {lines}; echo '</sdf>') > {shlex.quote(words[2])}"
+                again = shlex.join([*words, os.path.relpath(reading.order.file)])
+                told = f"model {name!r} of {os.path.basename(path)} moves"
+                yield f"{told}: give it a file of its own, {command}; {again}"
 
 
 def _partners(it: Looked, found: Found) -> list[str]:

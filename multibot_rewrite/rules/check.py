@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import gc_paused, with_gaps
@@ -18,7 +17,7 @@ from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.folded import folded, in_order
-from multibot_rewrite.rules.system import clocks, differing, frame_ids, likes, localized
+from multibot_rewrite.rules.system import clocks, differing, likes
 from multibot_rewrite.rules.system.commands import command_to_nobody
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
 from multibot_rewrite.rules.system.names import topic_names_miss
@@ -77,7 +76,7 @@ def _judged_findings(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
     """Return what rules find, without what another of their findings explains."""
     with gc_paused():
         found = [*_found_by(rules, seen)]
-        return differing.unexplained(_without_unjoined_maps(seen, _without_their_senders(found)))
+        return differing.unexplained(_without_their_senders(found))
 
 
 def _found_by(rules: Iterable[Rule], seen: Index) -> Iterator[Finding]:
@@ -87,24 +86,11 @@ def _found_by(rules: Iterable[Rule], seen: Index) -> Iterator[Finding]:
             yield from rule.check(seen if rule.code in ABSENCE else seen.sure)
 
 
-def _without_unjoined_maps(seen: Index, found: Sequence[Finding]) -> list[Finding]:
-    """Return the findings without unknown frames `map` of robots that nothing joins with the map."""
-    lost = {it.robot for it in found if it.code == localized.map_not_joined.code}
-    unknown = frame_ids.frame_id_unknown.code
-    return [
-        it
-        for it in found
-        if it.code != unknown
-        or it.robot not in lost
-        or not {*WORLD_FRAMES}.issuperset(map(seen.plain_frame, it.names))
-    ]
-
-
 def _without_their_senders(found: Sequence[Finding]) -> list[Finding]:
-    """Return the findings without those about a sender whose reader has one for the same names."""
-    missed = {frozenset(it.names) for it in found if it.code == topic_names_miss.code}
+    """Return the findings without those about a sender whose reader has one for the same topic."""
+    missed = {name for it in found if it.code == topic_names_miss.code for name in it.names[1:]}
     sender = command_to_nobody.code
-    return [it for it in found if it.code != sender or frozenset(it.names) not in missed]
+    return [it for it in found if it.code != sender or it.names[0] not in missed]
 
 
 def contradictions(seen: Index) -> list[Finding]:

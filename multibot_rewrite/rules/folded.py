@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from itertools import product
 
 from multibot_rewrite.base.bounded import own_rows
+from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import (
     ERROR,
     INCONCLUSIVE,
@@ -96,6 +97,7 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
     "described robots": _robots_of_description,
     "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
+    "a map": lambda seen, it: ("" for x in it.names if seen.plain_frame(x) in WORLD_FRAMES),
     "a frame": lambda seen, it: ("" for x in it.names[:1] if not x.startswith("/")),
     "a tf topic": lambda seen, it: ("" for x in _ends(seen, it.names) if x.type == TF),
     "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),
@@ -117,7 +119,7 @@ _ONE_OF = {
     **dict.fromkeys(("MG303", "MG306", "MG307", "MG501"), ("names", 2)),
     **{"MG102": ("node", 2), "MG304": ("node", 3), "MG101": ("robot", 3), "MG322": ("robot", 3)},
 }
-_UNPLANNED = "MG108"
+_UNPLANNED, _LACKING = "MG108", ("MG101", "MG102")
 # From bad to good.
 _BAD = (ERROR, INCONCLUSIVE, WARNING, NOTE)
 # The codes of each kind of cause, as they begin; what is in none comes last.
@@ -158,6 +160,14 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     """Return a cause with its consequences in the hint, at the worst of their levels."""
     if not explained:
         return it
+    # What the plan has and no rule brings: the rules alone would show it.
+    ruled = {rule.node for rule in it.remaps} if it.code not in _LACKING else ()
+    lost = [x.node for x in explained if x.code in _LACKING and not x.remaps]
+    if lost := [node for node in unique(lost) if ruled and node not in ruled]:
+        told = (
+            f"by the plan {shorten(lost)} has to give what is waited for: start it, or see its log"
+        )
+        it = it._replace(hint=told, remaps=(), settings=())
     first = explained[0]
     others = unique(one.code for one in explained if one.code != first.code)
     more = f", and {shorten(others)}" if others else ""
@@ -180,24 +190,35 @@ def of_one_target(rules: Iterable[Remap]) -> tuple[Remap, ...]:
 def _merged(found: Iterable[Finding]) -> Iterator[Finding]:
     """Yield the findings; those that several nodes share become one, at the first and worst."""
     groups: dict[tuple[object, ...], list[Finding]] = {}
-    for it in found:
+    every = [*found]
+    # Those with one name in place of a planned one have one rule, whatever this breaks.
+    ruled = Counter(it.names for it in every if _has_one_rule(it))
+    for it in every:
         by, _ = _ONE_OF.get(it.code, ("", 0))
         common = (it.code, getattr(it, by, ""), it.hint if by == "robot" else "")
         one = not it.remaps and it.robot if by == "robot" else it.node
-        groups.setdefault(common if by and one else (it,), []).append(it)
-    for own in groups.values():
-        code = own[0].code
-        if len(own) == 1 or len(own) < _ONE_OF[code][1]:
+        key: tuple[object, ...] = common if by and one else (it,)
+        key = it.names if _has_one_rule(it) and ruled[it.names] > 1 else key
+        groups.setdefault(key, []).append(it)
+    for group, own in groups.items():
+        code, one_name = own[0].code, group == own[0].names
+        if len(own) == 1 or not (one_name or len(own) >= _ONE_OF[code][1]):
             yield from own
         else:
-            yield _merged_finding(own, code)
+            by_node = one_name or _ONE_OF[code][0] == "names" or code == "MG101"
+            yield _merged_finding(own, by_node)
 
 
-def _merged_finding(own: Sequence[Finding], code: str) -> Finding:
+def _has_one_rule(it: Finding) -> bool:
+    """Return whether a finding's rules lead the second of its names to the first one."""
+    return {(rule.new, rule.old) for rule in it.remaps} == {it.names}
+
+
+def _merged_finding(own: Sequence[Finding], by_node: bool) -> Finding:
     """Return one finding for several of a code that differ in the node or the name."""
-    first = min(own, key=lambda it: _BAD.index(it.level))
+    first = min(own, key=lambda it: (_BAD.index(it.level), it.code == "MG102"))
     others = [it for it in own if it is not first]
-    if _ONE_OF[code][0] == "names" or code == "MG101":
+    if by_node:
         same = unique(it.node for it in others if it.node != first.node)
     else:
         same = unique(it.names[0] for it in others if it.names)
@@ -230,7 +251,10 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
 def _users(seen: Index, it: Finding) -> Sequence[str]:
     """Return the nodes that have the names that a finding is about, or send its frames."""
     own = (x for name in it.names for x in _frame_senders(seen)[name] if seen.robot(x) == it.robot)
-    return unique((it.node, *(end.node for end in _ends(seen, it.names)), *own))
+    # Of a node that is missing, those of what it has to give.
+    gone = () if it.node in seen.node else _planned_ends(seen, it)
+    names = (*it.names, *(x.name for x in gone if x.role in GIVES and x.type != TF))
+    return unique((it.node, *(end.node for end in _ends(seen, names)), *own))
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:

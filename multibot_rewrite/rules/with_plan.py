@@ -56,16 +56,16 @@ def one_for_a_cause(
         keys = [*_same_causes(seen, it, rules)]
         same = [them[key] for them in places for key in keys if key in them]
         (causes[same[0]] if same else others).append(it)
-    said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
+    said = {at: _with_cause(seen, left[at], own, rules, in_doubt) for at, own in causes.items()}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
     new = {*unplanned_nodes(plan, seen)} - {*matches(plan, seen).values()}
     kept = []
     for at, it in enumerate(left):
-        names = {*it.names} if at not in causes and _is_absence(it, rules) else set()
         # What a node gives that is no planned one is of that node's making.
-        if not new.isdisjoint(x.node for x in unplanned_ends_of(seen, it) if x.role in GIVES):
-            names = set()
+        own = new & {x.node for x in unplanned_ends_of(seen, it) if x.role in GIVES}
+        is_lost = at not in causes and not own and _is_absence(it, rules)
+        names = {*it.names} if is_lost else set()
         if not (names & lost or (names and names <= loose)):
             kept.append(said.get(at, it))
     every = {*unexplained([*kept, *by_plan])}
@@ -126,13 +126,17 @@ def _has_instead(it: Finding) -> bool:
 
 
 def _with_cause(
-    it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule], in_doubt: bool
+    seen: Index,
+    it: Finding,
+    by_plan: Sequence[Finding],
+    rules: Mapping[str, Rule],
+    in_doubt: bool,
 ) -> Finding:
     """Return the finding with the plan's remedy, or the plan's finding if that is the certain one."""
     place = by_plan[0]
     if in_doubt and _is_absence(it, rules) and not _is_absence(place, rules):
         return place
-    hint, remaps = _hint_of_plan(it, by_plan, rules)
+    hint, remaps = _hint_of_plan(seen, it, by_plan, rules)
     level = ERROR if any(one.level == ERROR for one in by_plan) else it.level
     found = it._replace(hint=hint, level=level, remaps=remaps)
     if not place.file:
@@ -141,7 +145,7 @@ def _with_cause(
 
 
 def _hint_of_plan(
-    it: Finding, by_plan: Sequence[Finding], known: Mapping[str, Rule]
+    seen: Index, it: Finding, by_plan: Sequence[Finding], known: Mapping[str, Rule]
 ) -> tuple[str, tuple[Remap, ...]]:
     """Return (the plan's hint, the remap rules that it names, those of all nodes named)."""
     first, *others = by_plan
@@ -159,7 +163,10 @@ def _hint_of_plan(
     more = [f"{node}{places.get(node, '')}" for node in nodes if node != first.node]
     same = f"; the same for {shorten(more)}" if more else ""
     remaps = of_one_target(led)
-    if several := {it.node for it in {*led}.difference(remaps)}:
+    # Of no robot, and sends it to all: a command that would come to nobody.
+    sent = (end for old in olds & seen.orders.keys() for end in seen.orders[old].publishers)
+    several = {it.node for it in sent if not seen.robot(it.node)} - planned
+    if several := several.union(it.node for it in {*led}.difference(remaps)):
         look = f"see their rules, and why {shorten(sorted(several))} uses one name for all robots"
         return f"by the plan {who} {first.message}{same}; {look}", ()
     if not all(one.remaps for one in by_plan):

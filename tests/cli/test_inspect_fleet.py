@@ -45,8 +45,8 @@ MAP = "map_server (nav2_map_server map_server) | up.launch.py:6 | "
 SHOWN = [
     f"all robots | {MAP} | all robots have the map that it serves",
     "each robot | own driver: rate | up.launch.py:7 | p.yaml | ",
-    "all robots | rviz2 rviz2 | up.launch.py:9 |  | "
-    "it only shows data or forwards an operator's commands",
+    "each robot | rviz2 rviz2 | up.launch.py:9 |  | "
+    "each robot has its own tf topic, and one rviz2 reads one",
     "each robot | own late | up.launch.py:8 |  | after a time",
 ]
 

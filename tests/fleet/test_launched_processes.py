@@ -815,13 +815,16 @@ def test_a_launch_file_of_several_robots_is_that_of_its_first(
     assert "the launch file starts tb1, tb2: each robot is as tb1 is" in said
 
 
-def test_two_sides_of_a_robot_are_no_two_robots(tmp_path: Path) -> None:
+@pytest.mark.parametrize("spawner", ["", "Node(package='ros_gz_sim', executable='create'),"])
+def test_two_sides_of_a_robot_are_no_two_robots(spawner: str, tmp_path: Path) -> None:
+    """Two that are spawned are two robots, whatever they are called."""
     for name in ("left", "right"):
         (tmp_path / f"{name}.yaml").write_text("/**:\n  ros__parameters: {rate: 1}\n")
     body = SEVERAL.replace("FOLDER", str(tmp_path)).replace("NAMES", "('left', 'right')")
-    found = actions(tmp_path, body)
+    body = body.replace("PushRosNamespace(name),", f"PushRosNamespace(name), {spawner}")
+    found = actions(tmp_path, body, more="simulator: gazebo")
     own = [it.values["namespace"] for it in found if _word(it) == "driver"]
-    assert own == ["/robot2/left", "/robot2/right"]
+    assert own == (["/robot2"] if spawner else ["/robot2/left", "/robot2/right"])
 
 
 @pytest.mark.parametrize("simulator", ["true", "false"])

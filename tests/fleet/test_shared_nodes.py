@@ -12,7 +12,10 @@ from plans import own
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.closed_plan import closed_plan
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
+from multibot_rewrite.fleet.fleet_plan import make_plan
 from multibot_rewrite.system.records import System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -156,12 +159,12 @@ def test_what_is_given_once_is_shared_and_what_is_the_robots_is_not(
 
 
 def test_what_plugins_of_a_classic_world_send_is_shared(tmp_path: Path) -> None:
-    """gazebo_plugins gazebo_ros_p3d.cpp sends odom; the robot's own model in the world is spawned."""
+    """gazebo_plugins gazebo_ros_p3d.cpp sends odom."""
     p3d = (
         "<model name='{0}'><link name='l'/><plugin name='p3d' filename='libgazebo_ros_p3d.so'><ros>"
         "<namespace>/model/{0}</namespace><remapping>odom:=pose</remapping></ros></plugin></model>"
     ).format
-    world = f"<sdf version='1.6'><world name='w'>{p3d('box')}{p3d('bot')}</world></sdf>"
+    world = f"<sdf version='1.6'><world name='w'>{p3d('box')}</world></sdf>"
     start = "Node(package='acme', executable='follow', name='follow')"
     launch = (
         "from launch import LaunchDescription\nfrom launch.actions import ExecuteProcess\n"
@@ -174,3 +177,47 @@ def test_what_plugins_of_a_classic_world_send_is_shared(tmp_path: Path) -> None:
     files = {"fleet.yaml": fleet, "w.world": world, "go.launch.py": launch, "rows.yaml": rows}
     read, _ = shared_of(tmp_path, **files)
     assert {it for it in read if not it.startswith("/robot1/")} == {"/model/box/pose"}
+
+
+def test_what_a_shared_node_sends_is_not_moved_to_a_robot(tmp_path: Path) -> None:
+    """A build judges one robot at a time: it has to know who sends for all."""
+    box = "{/box: geometry_msgs/msg/PoseStamped}"
+    (tmp_path / "nodes.yaml").write_text(
+        f"nodes:\n  boxes: {{package: acme, publishes: {box}}}\n"
+        f"  picker: {{package: acme, subscribes: {box.replace('/box', 'box')}}}\n"
+        "node_sets: {acme: {nodes: [boxes, picker]}}\n"
+    )
+    file = tmp_path / "fleet.yaml"
+    text = FLEET.format(layout="tf-per-robot", rover=ROVER, shared="boxes")
+    file.write_text(text.replace("node_sets: nav2", "node_sets: acme\nnodes: nodes.yaml"))
+    # The plan itself shares the topic.
+    plan = make_plan(read_fleet(str(file), "", {}))
+    (found,) = (it for it in closed_plan(plan).gaps if it.code == "MG303")
+    assert found.hint.startswith("pass the rule /robot1/box:=/box, or put /box in shared_topics")
+
+
+@pytest.mark.parametrize(
+    ("layout", "windows"),
+    [("both", ["/robot1/rviz2", "/robot2/rviz2"]), ("frames-per-robot", ["/rviz2"])],
+)
+def test_the_plan_has_the_windows_that_the_build_opens(
+    layout: str, windows: list[str], tmp_path: Path
+) -> None:
+    """One RViz reads one tf topic: an RViz for all is one for each where each has its own."""
+    launch = (
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+        "def generate_launch_description():\n    return LaunchDescription([\n"
+        "        Node(package='rviz2', executable='rviz2')])\n"
+    )
+    (tmp_path / "go.launch.py").write_text(launch)
+    fleet = FLEET.format(layout=layout, rover=ROVER, shared="[]")
+    (tmp_path / "fleet.yaml").write_text(fleet.replace("node_sets: nav2", "launch: go.launch.py"))
+    made = planned_fleet(tmp_path / "fleet.yaml")
+    plan = expected(made.fleet)
+    assert [it.name for it in plan.nodes if it.name.endswith("rviz2")] == windows
+    tf = {it.name for it in plan.ends if it.node in windows and it.name.endswith("/tf")}
+    assert tf == {it.replace("rviz2", "tf") for it in windows}
+    (text,) = (
+        it.data.decode() for it in make_outputs(made).files if it.path.endswith(".launch.py")
+    )
+    assert ("f'/{name}/tf'" in text.partition("rviz2")[2]) is (layout == "both")

@@ -277,7 +277,8 @@ def _contact(body: str) -> str:
         (BLOCK.format("base", _contact("")) + BUMPER, "write 'base_collision' or 'base_collision_1'"),
         (BLOCK.format("tip", _contact(TOUCH.format("tip_collision"))) + ROBOT,
          "give its link a <collision>"),
-        # A part of a robot, and a block of nobody.
+        # A part of a robot, a block of nobody, and a sensor that is no simulator's.
+        (BUMPER.replace("<collision/>", _contact(TOUCH.format("x"))), None),
         (BLOCK.format("bumper", _contact(TOUCH.format("x"))), None),
         (BLOCK.format("tipp", _contact(TOUCH.format("x"))) + BUMPER, None),
         # gz-sim Contact.cc: a child of the sensor's link, by its own name.

@@ -19,7 +19,6 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
-from multibot_rewrite.producers.ros.assemble import frames
 from multibot_rewrite.producers.ros.headers import HeaderSamples
 from multibot_rewrite.producers.ros.tf_subscriptions import Pace, TfSubscriptions
 from multibot_rewrite.producers.snapshot_file import read_snapshot
@@ -107,11 +106,12 @@ def heard_on_tf(stamps: Iterable[float], topic: str = "/tf", marks: Iterable[int
     receive: list[Callable[..., None]] = []
     session = TfSubscriptions(lambda *it: receive.append(it[3]) or (lambda: None))  # type: ignore[arg-type, func-returns-value]
     volatile = Qos("UNKNOWN", 0, "RELIABLE", "VOLATILE", math.inf, math.inf, "AUTOMATIC", math.inf)
-    session.update([End(TOPIC, PUBLISHES, topic, TF, "", "/a", volatile, "")], False)
+    ends = [End(TOPIC, PUBLISHES, topic, TF, "", "/a", volatile, "")]
+    session.update(ends, False)
     numbers = list(marks) or range(99)
     for number, it in zip(numbers, stamps, strict=False):
         receive[0](read_tf(transform("odom", "base_link", it)), number)
-    return next(iter(session.rates().values()), 0.0)
+    return next(session.edges(ends)).rate
 
 
 def test_a_transform_that_one_sends_has_a_rate() -> None:
@@ -190,7 +190,7 @@ def test_the_age_of_a_transform_is_that_of_its_youngest_message(tmp_path: Path) 
     # One that is ahead is not the younger for it.
     for number, behind in enumerate((2.0, -10.0)):
         receive[0](read_tf(transform("map", "odom", time.time() - behind)), number)
-    edge, other = sorted(frames(session.transforms(), ends, ages=session.ages))
+    edge, other = sorted(session.edges(ends))
     assert 29.9 <= edge.age <= 30.9 and 1.9 <= other.age <= 2.9
     (tmp_path / "a.json").write_bytes(to_json(System(edges=(edge._replace(age=math.inf),))))
     assert read_snapshot(str(tmp_path / "a.json")).edges[0].age == math.inf

@@ -23,7 +23,6 @@ from multibot_rewrite.producers.ros.assemble import (
     ObservationClock,
     cut_short,
     endpoints_with_process,
-    frames,
     nodes_with_process,
     not_heard,
     processes_by_node,
@@ -337,7 +336,7 @@ def test_a_transform_has_the_numbers_that_came_last() -> None:
         calls[0](SimpleNamespace(transforms=[stamped("odom", "base", x)]), None)
     for name, x in {"imu": math.nan, "gps": math.inf, "lost": -1e13}.items():
         calls[0](SimpleNamespace(transforms=[stamped("base", name, x)]), None)
-    found = frames(session.transforms(), ends, last=session.last)
+    found = session.edges(ends)
     assert {it.child: it.transform for it in found} == {
         "base": (2.123456789, 0, 0, 0, 0, 0, 1),
         **dict.fromkeys(("imu", "gps", "lost"), (math.inf, 0, 0, 0, 0, 0, 1)),

@@ -91,6 +91,8 @@ def test_what_names_a_node(text: str, origin: Origin) -> None:
         ("L1", TOPIC, "/clock", ""),
         ("L1", TOPIC, "clock", "/clock"),
         ("L4", TOPIC, "clock", ""),
+        ("L1", TOPIC, "clock/compressed", "/clock/compressed"),
+        ("L4", SERVICE, "/clock/_action/send_goal", ""),
         ("L4", TOPIC, "/scan", "/scan/a"),
         ("L4", SERVICE, "reset", "reset/a"),
         ("L4", TOPIC, "eye/compressed", "eye/a/compressed"),
@@ -179,6 +181,7 @@ def test_a_static_transform_may_have_the_robots_name_already() -> None:
     ("frames", "condition", "root", "edges"),
     [
         ("odom base", "", "", [("odom", "base")]),
+        ("/odom /base", "", "", [("odom", "base")]),
         ("odom base", "", "root", [("odom", "root")]),
         ("odom base given", "", "root", [("odom", "base")]),
         ("map my_odom", "", "", [("map", "my_odom")]),

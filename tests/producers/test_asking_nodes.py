@@ -242,15 +242,13 @@ def test_what_two_latched_senders_have_otherwise_is_nowhere() -> None:
     ears = Ears()
     ears.it.update([tf_end("/tf_static", qos=LATCHED), tf_end("/tf")], False)
     static, moving = ears.heard["/tf_static", True], ears.heard["/tf", False]
-    edge = ReceivedTransform("/tf_static", True, "base", "a")
     static(SimpleNamespace(transforms=[stamped("a", 1.0)]), b"one")
-    assert ears.it.last[edge][0] == 1.0
+    assert [it.transform[0] for it in ears.it.edges(())] == [1.0]
     static(SimpleNamespace(transforms=[stamped("a", 2.0)]), b"two")
-    assert ears.it.last[edge] == ()
-    assert ears.it.of_several() == {edge}
+    assert [(it.transform, it.several) for it in ears.it.edges(())] == [((), True)]
     for x in (1.0, 2.0):
         moving(SimpleNamespace(transforms=[stamped("b", x)]), int(x))
-    assert ears.it.last[ReceivedTransform("/tf", False, "base", "b")][0] == 2.0
+    assert next(ears.it.edges(())).transform[0] == 2.0
 
 
 def test_a_sender_that_is_started_again_is_no_second_one() -> None:
@@ -262,7 +260,7 @@ def test_a_sender_that_is_started_again_is_no_second_one() -> None:
         ears.it.update([end._replace(process=it) for it in processes], False)
         for _ in processes:
             ears.heard["/tf_static", True](SimpleNamespace(transforms=[stamped("a")]), 1)
-        return {it.topic for it in ears.it.of_several()}
+        return {it.topic for it in ears.it.edges(()) if it.several}
 
     assert (heard("first"), heard("second"), heard("third")) == (set(), set(), set())
     assert ears.ended == ["/tf_static", "/tf_static"]

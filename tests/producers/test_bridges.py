@@ -46,6 +46,11 @@ def test_rows_of_arguments_as_a_file_has_them_and_those_that_end_the_bridge() ->
     other = it._replace(program="ros_gz_image/image_bridge")
     assert rows_in_arguments(other) == rows_in_arguments(running(arguments=wrong)) == ""
     assert [*refused_rows(other)] == []
+    # The text of an object (f"{LaunchConfiguration(...)}/image") is no topic, and rcl refuses it.
+    images = running(arguments=("<a.B object at 0x7f>/image", "cam/image"))
+    assert [it.end.name for it in bridged_by(images._replace(program=other.program))] == [
+        "cam/image"
+    ]
 
 
 def test_a_topic_of_one_robots_model_is_known_by_its_rule() -> None:

@@ -67,6 +67,32 @@ def test_a_share_folder_of_a_package_in_python(tmp_path: Path) -> None:
     assert not (source / "assets").exists()
 
 
+SETUP = """\
+import os
+from glob import glob
+from setuptools import setup
+package_name = 'mine'
+share = f'share/{package_name}'
+setup(name=package_name, data_files=[
+    (os.path.join('share', package_name), glob('launch/*.launch.py')),
+    (share + '/params', glob(os.path.join('config', '*.yaml')) + ['top.yaml']),
+    ('share/other', glob('config/*')), (share, glob('../*')), [share, len(share)], (1, [None]),
+])
+"""
+
+
+def test_a_share_folder_is_as_data_files_say(tmp_path: Path) -> None:
+    files = ("config/nav.yaml", "top.yaml", "launch/b.launch.py", "launch/c.txt", "../beside.txt")
+    source = write(tmp_path / "src", *files)
+    (source / "setup.py").write_text(SETUP)
+    link_share("mine", str(source), str(tmp_path / "share"))
+    there = {it.name for it in (tmp_path / "share").iterdir()}
+    assert there == {"b.launch.py", "config", "launch", "params", "setup.py", "top.yaml"}
+    params = {it.name: os.path.realpath(it) for it in (tmp_path / "share/params").iterdir()}
+    own = {"nav.yaml": "config/nav.yaml", "top.yaml": "top.yaml"}
+    assert params == {name: str(source / path) for name, path in own.items()}
+
+
 PYTHON = 'DeclareLaunchArgument("map"), DeclareLaunchArgument(name="start_x", default_value="0")'
 
 

@@ -259,7 +259,7 @@ def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) ->
 def test_ears_are_those_of_transforms_and_of_headers_where_they_are_asked_for(
     headers: bool, clock: Clock
 ) -> None:
-    made: Any = look.GraphListeners(session(clock, Request(1.0, headers=headers)))
+    made: Any = look.GraphListeners(session(clock, Request(1.0, substitutes=not headers)))
     updated: list[Any] = []
     made.tf = SimpleNamespace(update=lambda *it: updated.append(it), silent=lambda: ["/tf", "/a"])
     made.headers = SimpleNamespace(

@@ -20,7 +20,7 @@ from tools.bringups.choose import Choice, chosen, launch_files, unread, unstarte
 from tools.bringups.compare import Comparison, compare
 from tools.bringups.install import install
 from tools.bringups.reading import read
-from tools.bringups.running import Process, Ran, start
+from tools.bringups.running import Process, Ran, by_controller, start
 from tools.strangers import strangers
 
 ROBOTS = ("robot1", "robot2")
@@ -147,9 +147,9 @@ def test_two_processes_of_one_program_are_told_apart() -> None:
 
 
 def test_a_bridge_is_there_if_its_topics_are_bridged() -> None:
-    rows = ("/scan@a[b", "/imu@a[b")
+    rows, rules = ("/lidar@a[b", "/imu@a[b"), (("lidar", "scan"),)
     vendor = [
-        Process("ros_gz_bridge", "parameter_bridge", words=rows),
+        Process("ros_gz_bridge", "parameter_bridge", words=rows, rules=rules),
         Process("ros_gz_bridge", "parameter_bridge", words=("/clock@a[b",)),
     ]
     names = [f"/{robot}/scan" for robot in ROBOTS]
@@ -301,6 +301,14 @@ def test_a_bringup_is_what_no_other_file_includes(tmp_path: Path) -> None:
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     assert list(launch_files(tmp_path)) == ["launch/all.launch.py"]
+
+
+def test_a_controller_is_behind_the_options_of_a_command() -> None:
+    for manager in ((), ("-c", "/robot1/controller_manager")):
+        words = ("control", "load_controller", *manager, "--set-state", "active", "arm")
+        assert [it.words for it in by_controller(Process("", "ros2", words=words))] == [
+            ("arm", *manager)
+        ]
 
 
 def test_files_that_cannot_be_read_are_said_before_a_run() -> None:

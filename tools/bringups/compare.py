@@ -100,10 +100,12 @@ def compare(
 
 
 def _several(bringup: Sequence[Process]) -> list[str]:
-    """Return the namespaces of state publishers that differ by a number alone, where there are some."""
-    publishers = (it for it in bringup if it.program == "robot_state_publisher")
-    homes = {it.namespace.strip("/").partition("/")[0] for it in publishers} - {""}
-    is_one = len({re.sub(r"\d+", "", it) for it in homes}) != 1
+    """Return the namespaces of state publishers, where there are some that differ by a number alone,
+    or a spawner in each."""
+    above = [(it.program, it.namespace.strip("/").partition("/")[0]) for it in bringup]
+    homes = {home for program, home in above if program == "robot_state_publisher"} - {""}
+    spawned = {home for program, home in above if program in ("create", "spawn_entity.py")}
+    is_one = len({re.sub(r"\d+", "", it) for it in homes}) != 1 and not homes <= spawned
     return [] if is_one or len(homes) < 2 else sorted(homes)
 
 
@@ -253,13 +255,14 @@ def _bridged(process: Process, left: Sequence[Process], robots: Sequence[str]) -
 
 def topics(process: Process) -> Iterator[str]:
     """Return the ROS topics that a bridge is told: in its words, its file or its parameters."""
-    renamed = dict(process.rules)
+    renamed = {_whole(process, old): new for old, new in process.rules}
+    names = list(process.parameters.get(BRIDGED, ()))
     for word in process.words:
         name = word.partition("@")[0]
         is_image = process.program == IMAGES and word[:1] != "-"
         if name and ("@" in word or is_image):
-            yield _whole(process, renamed.get(name, name))
-    for name in process.parameters.get(BRIDGED, ()):
+            names.append(name)
+    for name in (_whole(process, it) for it in names):
         yield _whole(process, renamed.get(name, name))
 
 

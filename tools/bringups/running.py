@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
@@ -55,6 +56,8 @@ INSTALLED = os.environ.get("AMENT_PREFIX_PATH", "")
 MANY = {"ros2_control_node", "component_container", "component_container_mt"}
 # What starts controllers; the second one until Galactic.
 SPAWNERS = ("spawner", "spawner.py")
+# Options of ``ros2 control load_controller`` with a value (ros2controlcli, verb/load_controller.py).
+_VALUED = ("-c", "--controller-manager", "--set-state")
 # Where the topics of a bridge's file are among its parameters.
 BRIDGED = "\0bridged"
 # Variables that launch, Python and the referee set themselves.
@@ -341,12 +344,12 @@ def by_controller(node: Process) -> Iterator[Process]:
     """Return a process for each controller that a spawner, or a command of ros2 control, starts."""
     words = list(node.words)
     if [node.program, *words[:2]] == ["ros2", "control", "load_controller"]:
-        names = [it for it in words[2:] if not it.startswith("-")]
-        state = [it for it in names if it in ("active", "inactive", "configured", "start")]
-        for name in (it for it in names if it not in state):
-            yield node._replace(
-                package="controller_manager", program="spawner", words=(name,), name=""
-            )
+        behind = pairwise(words[1:])
+        names = [it for before, it in behind if before not in _VALUED and it[:1] != "-"]
+        for name in names:
+            manager = [it for option, it in pairwise(words) if option in _VALUED[:2]][:1]
+            own = (name, *(part for it in manager for part in ("-c", it)))
+            yield node._replace(package="controller_manager", program="spawner", words=own, name="")
         return
     if node.program not in SPAWNERS:
         yield node

@@ -87,14 +87,10 @@ def _managers(inventory: Inventory) -> dict[_Element, tuple[str, ...]]:
     return {element: section.names for element, section in inventory.served if section.process_wide}
 
 
-def _parameter_files(plugin: _Element) -> list[_Element]:
-    return list(plugin.iterchildren(_FILES))
-
-
 def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) -> Iterator[Edit]:
     """Yield the edits that move parameter files of a removed plugin into the one that stays."""
-    known = {text_of(it) for it in _parameter_files(plugin)}
-    texts = [spans.text_of(it) for it in _parameter_files(other) if text_of(it) not in known]
+    known = {text_of(it) for it in plugin.iterchildren(_FILES)}
+    texts = [spans.text_of(it) for it in other.iterchildren(_FILES) if text_of(it) not in known]
     if last := _child_elements(plugin)[-1:]:
         at = before.end_of(last[0])
         yield from (was(at, at, b"", b"\n      " + text) for text in texts)

@@ -98,18 +98,15 @@ def _has_block(block: _Element, root: _Element) -> bool:
     for it in block.iterchildren("*"):
         same = [one for one in said if plain(one) == plain(it)]
         there = [
-            one for one in said if one.tag == "plugin" == it.tag and _library(one) == _library(it)
+            one
+            for one in said
+            if one.tag == "plugin" == it.tag and one.get("filename") == it.get("filename")
         ]
         files = {plain(file) for one in there for file in one.iterchildren("parameters")}
         has_files = all(plain(file) in files for file in it.iterchildren("parameters"))
         if not same and not (there and has_files):
             return False
     return True
-
-
-def _library(plugin: _Element) -> str:
-    """Return the file name of a plugin's library."""
-    return plugin.get("filename", "")
 
 
 def _moved(old: _Element, mounted: Mounted, root: _Element) -> bool:

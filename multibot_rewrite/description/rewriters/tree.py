@@ -293,15 +293,10 @@ def hardware_keys(element: _Element) -> list[str]:
     return [class_] if class_ else []
 
 
-def sensor_keys(element: _Element) -> list[str]:
-    """Return the type of a ``<sensor>``."""
-    return [element.get("type", "").strip()]
-
-
 SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
     "plugin": plugin_keys,
     "hardware": hardware_keys,
-    "sensor": sensor_keys,
+    "sensor": lambda element: [element.get("type", "").strip()],
 }
 
 

@@ -109,7 +109,7 @@ def own_names(inventory: "Inventory", words: Sequence[str]) -> OwnNames:
     found: dict[tuple[str, str], None] = {}
     every = ((it.kind, it.text) for names in inventory.names for it in names if it.kind)
     for kind, text in every:
-        if not _is_marked(text):
+        if not any(mark in text for mark in MARKS):
             continue
         name = _unmarked_text(text, words)
         if _TWICE.search(text):
@@ -117,10 +117,6 @@ def own_names(inventory: "Inventory", words: Sequence[str]) -> OwnNames:
             raise UsageError(f"the xacro's arguments would make {name!r} of a {kind}; {hint}")
         found[kind, name] = None
     return found
-
-
-def _is_marked(text: str) -> bool:
-    return any(mark in text for mark in MARKS)
 
 
 def has_mark(data: bytes) -> bool:
@@ -142,7 +138,7 @@ def marked_texts(plain: "Inventory", marked: "Inventory") -> NameTexts:
     for kind, names in after.items():
         same = len(before.get(kind, ())) == len(names)
         pairs = zip(before[kind], names, strict=True) if same else ()
-        found.update({(kind, old): new for old, new in pairs if _is_marked(new)})
+        found.update({(kind, old): new for old, new in pairs if any(mark in new for mark in MARKS)})
     return found
 
 

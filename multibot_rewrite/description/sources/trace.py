@@ -95,11 +95,8 @@ def alike(path: str, given: str) -> str:
     if os.path.isabs(given) or not os.path.isabs(path):
         return path
     relative = os.path.relpath(path)
-    return relative if _folders_up(relative) <= _folders_up(os.path.normpath(given)) else path
-
-
-def _folders_up(path: str) -> int:
-    return path.split(os.sep).count(os.pardir)
+    up, least = (it.split(os.sep).count(os.pardir) for it in (relative, os.path.normpath(given)))
+    return relative if up <= least else path
 
 
 EIGHT = 8

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable
+from functools import partial
 from itertools import accumulate
 
 from multibot_rewrite.base.model import Claim, Edit
@@ -50,9 +51,7 @@ def strip_edits(
         if spans and is_reached(claim, naming) and not is_inserted(claim):
             edits += _claim_edits(document.source, claim, spans)
 
-    def unspell(kind: str, name: str) -> str:
-        return unspelled(naming, kind, name, robot)
-
+    unspell = partial(unspelled, naming, robot=robot)
     claims = [it for it in inventory.claims if not is_inserted(it)] if edits else inventory.claims
     for claim, old in respell_collisions(document.root, claims, inventory.declared, unspell):
         slot = value_slot(document.source, *claim[2:])

@@ -83,7 +83,9 @@ def verify(
     file = inventory.document.file
     beside = renamed_names(urdf_declarations, naming, robot)
     # Byte offsets of elements are needed only if more than affixes has to be removed.
-    asks_places = MARKER in output or bool(naming.own) or _replaces_text(plan)
+    asks_places = (
+        MARKER in output or bool(naming.own) or any(edit.start < edit.end for edit in plan.edits)
+    )
     try:
         read = read_document(output, f"{file} for {robot}", asks_places)
         result = collect(read, tree, beside, naming.read_as)
@@ -119,10 +121,6 @@ def _names_as_in_source(
         kinds = claim.site.kinds
         found.append((ResolvedName(0, claim.value, kinds[0], kinds),) if below else names)
     return found
-
-
-def _replaces_text(plan: Plan) -> bool:
-    return any(edit.start < edit.end for edit in plan.edits)
 
 
 def same_names(it: Evidence) -> None:
@@ -182,7 +180,10 @@ def same_targets(it: Evidence) -> None:
         seen.add(pair)
         kept = {at for at, name in enumerate(names) if (name.kind, name.text) in own} if own else ()
         kinds = _kinds(now, kept)
-        lost = any(_lost_its_target(name, it.inventory) for name in now) if "" in kinds else False
+        # Of what refers to nothing now, a declared name is one that did before.
+        unused = (name for name in now if not name.kind) if "" in kinds else ()
+        declared = it.inventory.declared
+        lost = any(one.text in declared.get(kind, ()) for one in unused for kind in one.kinds)
         if lost or kinds != _kinds(names, kept):
             raise ProofError(f"{file}: {new.value!r} does not name what it named before")
 
@@ -195,11 +196,6 @@ def _kinds(names: Names, kept: Collection[int]) -> list[str]:
         "frame" if at in kept and name.kind in FRAME_KINDS else name.kind
         for at, name in enumerate(names)
     ]
-
-
-def _lost_its_target(name: ResolvedName, inventory: Inventory) -> bool:
-    """Return whether this name refers to nothing now, although it did before."""
-    return not name.kind and any(name.text in inventory.declared.get(it, ()) for it in name.kinds)
 
 
 def robots_own(it: Evidence) -> None:
@@ -300,7 +296,8 @@ def strips_to_source(it: Evidence) -> None:
     """Check that undoing the rewrite, by the output alone, gives the input back."""
     own = strip.own_places(it.inventory, it.naming)
     fills = any(marker.filled for marker in it.markers)
-    if not (_undoes(it, own) if own or fills or _replaces_text(it.plan) else _adds_affixes(it)):
+    replaces = any(edit.start < edit.end for edit in it.plan.edits)
+    if not (_undoes(it, own) if own or fills or replaces else _adds_affixes(it)):
         raise ProofError(
             f"{it.file}: stripping {it.robot} from the output does not give the input back"
         )

@@ -19,7 +19,7 @@ from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotSta
 from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.outputs.related_files import launched_values
-from multibot_rewrite.fleet.outputs.rviz_outputs import RVIZ as PROGRAM
+from multibot_rewrite.fleet.robots.robot_nodes import RVIZ as PROGRAM
 from multibot_rewrite.planning.start import File, Start, shell_line
 from multibot_rewrite.producers.launch.handed_on import for_robot
 

@@ -155,7 +155,8 @@ def under_plugins(
     # Not if a launch file starts their controller manager.
     if launched and MANAGER in launched.started:
         return tuple(nodes)
-    return tuple(under_plugin(it, rules, release) for it in nodes)
+    spawned = launched.spawned if launched else {}
+    return tuple(under_plugin(it, rules, release, it.name in spawned) for it in nodes)
 
 
 def given_with(launched: Launched | None, given: Sequence[Run]) -> tuple[Run, ...]:

@@ -2,18 +2,15 @@
 """The simulator as the launch files of a robot start it: its world, its options, if it has a window."""
 
 import os
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from itertools import pairwise
 from typing import NamedTuple, cast
-
-from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.readback.reading import read_tree
 from multibot_rewrite.description.readback.xml import read_xml
-from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import read_document
@@ -73,20 +70,13 @@ def with_launched_world(file: FleetFile) -> FleetFile:
     return file
 
 
-def name_in_world(one: _Element) -> str:
-    """Return what a <model> or <include> of a world is called."""
-    return one.get("name") or text_at(one, "name") or text_at(one, "uri").rpartition("/")[2]
-
-
-def nodes_of_world(file: FleetFile, robots: Collection[str]) -> Iterator[Run]:
-    """Yield the nodes of a Gazebo Classic world that launch files name, without those of ``robots``."""
+def nodes_of_world(file: FleetFile) -> Iterator[Run]:
+    """Yield the nodes of a Gazebo Classic world that launch files name."""
     own = launched_simulator(file)
     if not own.is_classic or not os.path.isfile(own.world):
         return
     with suppress(InputError):  # it is told where the launch is read
         root = read_xml(read_file(own.world), own.world)
-        for it in [it for it in root.iter("model", "include") if name_in_world(it) in robots]:
-            cast("_Element", it.getparent()).remove(it)
         reading = read_tree(root, builtin_tree((), file.distro, ROS_2).definitions)
         lines = [cast("int", it.sourceline) for it in root.iter("plugin")]
         for node, run in zip(reading.nodes, plugin_nodes(reading, ""), strict=True):

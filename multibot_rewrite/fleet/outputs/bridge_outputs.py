@@ -128,11 +128,11 @@ def given_once(plan: FleetPlan) -> list[str]:
     own = {(name, end.role in _GIVES) for run, end, name in fleet.table.ends if run.robot}
     topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, fleet.table.runs)
     own |= {(it.ros, it.direction != DIRECTIONS["out"]) for it in topics if it.robot}
-    each = [it.names._replace(robot=it.spec.namespace) for it in plan.robots]
-    found = ((name, gives, robot_topic(it, name)) for name, gives in sorted(once) for it in each)
-    here = ((name, its, gives) for name, gives, its in found)
     return [
-        name for name, its, gives in here if (its, not gives) in own and (its, gives) not in own
+        name
+        for name, gives in sorted(once)
+        for its in (robot_topic(it.topics, name) for it in plan.robots)
+        if (its, not gives) in own and (its, gives) not in own
     ]
 
 

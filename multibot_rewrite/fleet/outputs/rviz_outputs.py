@@ -7,13 +7,11 @@ so is a description (robot_state_publisher.cpp); drivers send scans and clouds b
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import suppress
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, find_layout, make_naming
+from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, make_naming
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
     FILE,
@@ -28,14 +26,14 @@ from multibot_rewrite.fleet.outputs.output_file import (
     name_among,
     own_yaml,
     path_for,
-    yaml_of,
 )
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
+from multibot_rewrite.fleet.robots.robot_nodes import RVIZ
 from multibot_rewrite.fleet.robots.start_poses import world_of
 from multibot_rewrite.planning.shown import Shown, shown_by_robot, world_of_plan
 from multibot_rewrite.planning.start import File, Start
 from multibot_rewrite.related_files.names.node_topics import fleet_topics
-from multibot_rewrite.related_files.rviz.display_groups import is_for_one, leaves, shown_in
+from multibot_rewrite.related_files.rviz.display_groups import leaves
 from multibot_rewrite.related_files.rviz.read_config import (
     TF_PREFIX,
     TOPIC,
@@ -207,7 +205,6 @@ def _empty_displays(document: YamlText) -> Iterator[Finding]:
         yield found_at(document, found[0].node, BARE_HEADERS, message, hint)
 
 
-RVIZ = "rviz2"
 # What stands for the config of a fleet that names none: a path of no file.
 USUAL = "/fleet.rviz"
 
@@ -302,17 +299,6 @@ def opened_of(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[RvizOutput
         return [*configs]
     of_robots = ((it, tuple(one for one in it.windows if one.robot)) for it in configs)
     return [it._replace(windows=own or it.windows) for it, own in of_robots]
-
-
-def why_for_each(path: str, layout: str) -> str:
-    """Return why each robot has a window of its own; empty if one window shows all robots."""
-    chosen = find_layout(layout)
-    if chosen.tf_per_robot:
-        return "each robot has its own tf topic, and one rviz2 reads one"
-    with suppress(MultibotError):
-        if chosen.namespaced and any(map(is_for_one, shown_in(read_config(yaml_of(path))))):
-            return "panels or displays in it work for one robot alone"
-    return ""
 
 
 def windows(plan: FleetPlan, configs: Iterable[RvizOutput]) -> list[tuple[str, Start]]:

@@ -29,7 +29,6 @@ from multibot_rewrite.description.sources.world_systems import needed_systems
 from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.document import Document, read_document, tag_end, text_slot
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.launched_simulator import name_in_world
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, systems_of
@@ -73,11 +72,11 @@ def own_world(
     findings: list[Finding] = []
     for kind in _robots_by_description(robots):
         gone = [one for one in world.iterchildren("include", "model") if _is_robot(one, kind, path)]
-        names = kind.names | {name for one in gone if (name := name_in_world(one))}
+        names = kind.names | {name for one in gone if (name := _model_name(one))}
         for one in gone:
             edits.append(Edit(*it.spans.of(one), b"", None))
             findings.append(
-                _world_finding(it, one, f"the world's {name_in_world(one)!r} is left out", NOTE)
+                _world_finding(it, one, f"the world's {_model_name(one)!r} is left out", NOTE)
             )
         inside = {below for one in gone for below in one.iter()}
         for plugin in world.iter("plugin"):
@@ -121,7 +120,7 @@ def names_of_world(path: str, robots: Sequence[RewrittenRobot]) -> frozenset[str
             continue
         found |= _topics_in(one)
         if one.tag in ("include", "model"):
-            found.add(name_in_world(one))
+            found.add(_model_name(one))
     return frozenset(found)
 
 
@@ -130,7 +129,7 @@ def _is_robot(one: _Element, kind: _Kind, path: str) -> bool:
     uri = text_at(one, "uri")
     found = model_file(uri, os.path.dirname(os.path.abspath(path))) if uri else ""
     is_of_file = bool(found) and os.path.realpath(found) in kind.files
-    return is_of_file or name_in_world(one) in kind.names
+    return is_of_file or _model_name(one) in kind.names
 
 
 def _world_topics(world: str, systems: Sequence[str]) -> dict[str, str]:
@@ -152,6 +151,10 @@ def _robots_by_description(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
         prefixes = {it.partition("/")[0] if "/" in it else "" for it in links}
         names = {model.get("name", ""), *(prefixes if len(prefixes) == 1 else ())} - {""}
         yield _Kind(alike, frozenset(names), frozenset(files))
+
+
+def _model_name(one: _Element) -> str:
+    return one.get("name") or text_at(one, "name") or text_at(one, "uri").rpartition("/")[2]
 
 
 def _plugin_edits(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:

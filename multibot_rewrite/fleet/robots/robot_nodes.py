@@ -3,10 +3,12 @@
 
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.naming import find_layout, make_naming
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.rewriters.tree import library_key
@@ -21,7 +23,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     nodes_with,
     under_plugins,
 )
-from multibot_rewrite.fleet.outputs.output_file import params_of, text_of
+from multibot_rewrite.fleet.outputs.output_file import params_of, text_of, yaml_of
 from multibot_rewrite.fleet.robots.fitting.fitted import (
     brings_transforms,
     changed_frames,
@@ -65,6 +67,8 @@ from multibot_rewrite.producers.launch.records import IdleAction, LaunchedNode, 
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.related_files.context import NO_FRAMES, Frames
 from multibot_rewrite.related_files.lua import lua_values
+from multibot_rewrite.related_files.rviz.display_groups import is_for_one, shown_in
+from multibot_rewrite.related_files.rviz.read_config import read_config
 from multibot_rewrite.system.records import Edge, Origin, Place
 
 WORLD = "world"
@@ -169,7 +173,7 @@ def robot_nodes(
     frames, nodes = changed_frames(fitting, nodes), fitting
     written = _with_written_topics(nodes, own, parameters, file.distro)
     named = _with_topics_of_arguments(written, given, topics) if topics else written
-    marked, shared = apart(tuple(named), file)
+    marked, shared = apart(tuple(named), file, spec)
     is_sent = _is_sent_beside(has.sent, nodes, free, member, bool(launched))
     evidence = RobotEvidence(
         given,
@@ -370,15 +374,30 @@ def launched_nodes(evidence: RobotEvidence, others: Iterable[NodeFacts]) -> Iter
             yield it._replace(endpoints=tuple(end for end in it.endpoints if end.name in code))
 
 
+RVIZ = "rviz2"
 MANAGERS = "nav2_lifecycle_manager"
 NOT_MANAGED = declare("MF803", "shared-node-not-managed", NOTE, formats=("fleet",))
 
 
+def why_for_each(path: str, layout: str) -> str:
+    """Return why each robot has a window of its own; empty if one window shows all robots."""
+    chosen = find_layout(layout)
+    if chosen.tf_per_robot:
+        return "each robot has its own tf topic, and one rviz2 reads one"
+    with suppress(MultibotError):
+        if chosen.namespaced and any(map(is_for_one, shown_in(read_config(yaml_of(path))))):
+            return "panels or displays in it work for one robot alone"
+    return ""
+
+
 def apart(
-    nodes: Sequence[NodeFacts], file: FleetFile
+    nodes: Sequence[NodeFacts], file: FleetFile, spec: RobotSpec
 ) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
     """Return the nodes with shared ones marked, and findings about lifecycle managers of these."""
-    marked = [it._replace(shared=_runs_once(it.name, it.shared, file)) for it in nodes]
+    config = next(iter(spec.related_files.get("rviz", ())), "")
+    own_window = why_for_each(config, make_naming(**file.policy).layout.name)
+    usual = ((it, it.shared and not (own_window and it.kind == RVIZ)) for it in nodes)
+    marked = [it._replace(shared=_runs_once(it.name, once, file)) for it, once in usual]
     shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]
     left, notes = {}, []

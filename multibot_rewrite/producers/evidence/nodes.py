@@ -251,13 +251,16 @@ def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) 
     return node._replace(endpoints=tuple(ends))
 
 
-def under_plugin(node: NodeFacts, rules: Iterable[RemapRule], release: str) -> NodeFacts:
-    """Return a controller under the rules of the plugin that loads it, if these reach it."""
+def under_plugin(
+    node: NodeFacts, rules: Iterable[RemapRule], release: str, alone: bool
+) -> NodeFacts:
+    """Return a controller under its plugin's rules, if these reach it; ``alone``: not usual ones."""
     if not (node.is_controller and controller_way(release).of_manager):
         return node
     above, _, own = node.name.rpartition("/")
     mine = ((it.source, it.target) for it in rules if it.node in ("", own))
-    return remapped(node, mine, f"/{above}")
+    ends = (it._replace(remapped="") if alone else it for it in node.endpoints)
+    return remapped(node._replace(endpoints=tuple(ends)), mine, f"/{above}")
 
 
 def _resolved_target(new: str, above: str, home: str) -> str:

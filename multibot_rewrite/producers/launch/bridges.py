@@ -21,7 +21,7 @@ import yaml
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
@@ -126,8 +126,7 @@ def rows_in_words(
     ways = {word: name for name, word in _WAYS.items()}
     rows = (_ROW.fullmatch(word) for word in words if program in _BRIDGES)
     found = [it.groups() for it in rows if it and it["way"] and "/srv/" not in it["type"]]
-    names_ = (word for word in words if word and "@" not in word and word[0] != "-")
-    images = names_ if program in _OF_IMAGES else ()
+    images = (word for word in words if _is_image(program, word))
     found += [(word, _IMAGE, "[", "gz.msgs.Image", None) for word in images]
     entries = []
     for name, type_, way, gz, inside in found:
@@ -153,8 +152,13 @@ def _argument_rows(program: str, words: Sequence[str]) -> Iterator[Row]:
         row = _ROW.fullmatch(word)
         if program in _BRIDGES and row is not None:
             yield from _rows_of(row)
-        elif program in _OF_IMAGES and row is None and not word.startswith("-"):
+        elif _is_image(program, word):
             yield Row(Endpoint(TOPIC, PUBLISHES, word, _IMAGE, transport=True), word)
+
+
+def _is_image(program: str, word: str) -> bool:
+    """Return whether an argument is the topic of a bridge of images; rcl refuses other names."""
+    return program in _OF_IMAGES and word[:1] != "-" and check_topic_name(word) is None
 
 
 def _rows_of(row: re.Match[str]) -> Iterator[Row]:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER
@@ -41,16 +41,25 @@ def with_extras(graph: LaunchGraph) -> LaunchGraph:
     return graph._replace(nodes=tuple(nodes)) if extra else graph
 
 
-def _robots(nodes: Iterable[LaunchedNode]) -> tuple[str, ...]:
-    """Return the namespaces of two or more state publishers that differ by a number alone."""
-    homes = (it.namespace.split("/")[1] for it in nodes if it.package == STATE_PUBLISHER)
-    alike = lists_by_key((_NUMBER.sub("", it), it) for it in dict.fromkeys(homes) if it)
+def _robots(nodes: Sequence[LaunchedNode]) -> tuple[str, ...]:
+    """Return the namespaces of two or more state publishers that differ by a number alone.
+
+    Otherwise those that one line of a launch file starts, each beside a spawner."""
+    published = {_home(it): it.place for it in nodes if it.package == STATE_PUBLISHER}
+    spawned = {_home(it) for it in nodes if program_of(it) in programs().spawners}
+    named = ((_NUMBER.sub("", home), home) for home in published if home)
+    beside = ((place, home) for home, place in published.items() if home in spawned - {""})
+    alike = lists_by_key((*named, *beside))
     return next((tuple(it) for it in alike.values() if len(it) > 1), ())
+
+
+def _home(it: LaunchedNode) -> str:
+    return it.namespace.split("/")[1]
 
 
 def _names(it: LaunchedNode) -> Iterator[str]:
     """Yield texts that may name a node's robot: its first namespace, its own name and arguments."""
-    yield it.namespace.split("/")[1]
+    yield _home(it)
     yield it.name
     for word in it.arguments:
         yield from _WORDS.findall(word)

@@ -3,17 +3,20 @@
 
 Source: ament_index_python (a file ``share/ament_index/resource_index/packages/NAME`` below a prefix of
 AMENT_PREFIX_PATH stands for a package, its files are in ``share/NAME``). What a build installs is known
-by ``install(DIRECTORY config/ DESTINATION share/x/params)`` in CMakeLists.txt; of a package in Python
-the folders inside of its module are installed with those of the package."""
+by ``install(DIRECTORY config/ DESTINATION share/x/params)`` in CMakeLists.txt and ``data_files`` in
+setup.py; of a package in Python the folders inside of its module are installed with its own."""
 
 from __future__ import annotations
 
+import ast
 import os
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cache
+from glob import glob
 from pathlib import Path
+from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
@@ -133,7 +136,7 @@ def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:
 
 def link_share(name: str, folder: str, share: str) -> None:
     """Make ``share`` the share folder of a package, of links to its sources."""
-    elsewhere = [*_by_cmake(name, folder), *_by_module(name, folder)]
+    elsewhere = [*_by_cmake(name, folder), *_by_setup(name, folder), *_by_module(name, folder)]
     os.symlink(folder, share)
     for path, source in elsewhere:
         _link(share, path.split("/"), source)
@@ -156,6 +159,51 @@ def _by_cmake(name: str, folder: str) -> Iterator[tuple[str, str]]:
                 path = os.path.join(to, os.path.basename(own)).removeprefix(f"share/{name}/")
                 if os.path.exists(own) and path != os.path.relpath(own, folder):
                     yield path, own
+
+
+def _by_setup(name: str, folder: str) -> Iterator[tuple[str, str]]:
+    """Yield what ``data_files`` of a setup.py install under another path: that path, and the source."""
+    with suppress(OSError, ValueError, SyntaxError, RecursionError):
+        read = _Setup(folder, {})
+        for it in ast.walk(ast.parse(Path(folder, "setup.py").read_text("utf-8"))):
+            if isinstance(it, ast.Assign) and isinstance(it.targets[0], ast.Name):
+                read.texts[it.targets[0].id] = read.text(it.value)
+            elif isinstance(it, ast.Tuple) and len(it.elts) == 2:
+                to = read.text(it.elts[0]).strip("/")
+                for own in read.files(it.elts[1]) if f"{to}/".startswith(f"share/{name}/") else ():
+                    path = f"{to}/{os.path.basename(own)}".removeprefix(f"share/{name}/")
+                    if path != os.path.relpath(own, folder):
+                        yield path, own
+
+
+class _Setup(NamedTuple):
+    """Expressions of the setup.py in a ``folder``; ``texts`` are its variables, empty if unknown."""
+
+    folder: str
+    texts: dict[str, str]
+
+    def text(self, it: ast.AST) -> str:
+        """Return the text of an expression, as of ``os.path.join('share', package_name)``."""
+        if isinstance(it, ast.Constant):
+            return str(it.value)
+        if isinstance(it, ast.Name):
+            return self.texts.get(it.id, "")
+        if isinstance(it, ast.FormattedValue):
+            return self.text(it.value)
+        if isinstance(it, ast.JoinedStr):
+            return "".join(map(self.text, it.values))
+        if isinstance(it, ast.BinOp):
+            return self.text(it.left) + self.text(it.right)
+        return "/".join(map(self.text, it.args)) if isinstance(it, ast.Call) else ""
+
+    def files(self, it: ast.AST) -> list[str]:
+        """Return the files that an expression names, as ``glob('launch/*')``, in the folder."""
+        if isinstance(it, ast.BinOp):
+            return self.files(it.left) + self.files(it.right)
+        every = it.elts if isinstance(it, ast.List) else it.args if isinstance(it, ast.Call) else ()
+        named = [self.text(one).lstrip("/") for one in every]
+        found = (glob(os.path.join(self.folder, one)) for one in named if ".." not in one)
+        return sorted(path for paths in found for path in paths if os.path.isfile(path))
 
 
 def _by_module(name: str, folder: str) -> Iterator[tuple[str, str]]:

@@ -14,12 +14,10 @@ from multibot_rewrite.system.record_values import FARTHEST
 from multibot_rewrite.system.records import (
     BUSY_MACHINE,
     EXPECTED,
-    PUBLISHES,
     QUIET,
     TIMEOUT,
     TOPIC,
     Caveat,
-    Edge,
     End,
     Node,
 )
@@ -57,10 +55,6 @@ class ReceivedTransform(NamedTuple):
     latched: bool
     parent: str
     child: str
-
-
-NO_TRANSFORMS: Mapping[ReceivedTransform, tuple[float, ...]] = {}
-NO_RATES: Mapping[ReceivedTransform, float] = {}
 
 
 class LastChange(NamedTuple):
@@ -252,34 +246,3 @@ def age_of(stamp: float | None) -> float:
         return 0.0
     age = round(time.time() - stamp, 1)
     return math.inf if not stamp else age if abs(age) >= 1.0 else 0.0
-
-
-def frames(
-    received: Iterable[ReceivedTransform],
-    endpoints: Iterable[End],
-    of_several: Collection[ReceivedTransform] = (),
-    last: Mapping[ReceivedTransform, tuple[float, ...]] = NO_TRANSFORMS,
-    rates: Mapping[ReceivedTransform, float] = NO_RATES,
-    ages: Mapping[ReceivedTransform, float] = NO_RATES,
-) -> Iterator[Edge]:
-    """Yield the transforms received, each once a topic; static if it came from a latched subscription.
-
-    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last,
-    ``rates`` how often it came, ``ages`` how old it was."""
-    publishers = sets_by_key(
-        (end.name, end.node) for end in endpoints if end.kind == TOPIC and end.role == PUBLISHES
-    )
-    latched: dict[tuple[str, str, str], bool] = {}
-    for topic, is_latched, parent, child in received:
-        edge = (topic, parent, child)
-        latched[edge] = is_latched or latched.get(edge, False)
-    several = {(it.topic, it.parent, it.child) for it in of_several}
-    numbers = {(it.topic, it.parent, it.child): own for it, own in last.items()}
-    often = {(it.topic, it.parent, it.child): own for it, own in rates.items()}
-    old = {(it.topic, it.parent, it.child): own for it, own in ages.items()}
-    for edge, static in sorted(latched.items()):
-        topic, parent, child = edge
-        senders = tuple(sorted(publishers[topic]))
-        transform = numbers.get(edge, ())
-        rate, age = often.get(edge, 0.0), old.get(edge, 0.0)
-        yield Edge(child, parent, topic, static, senders, edge in several, transform, rate, age=age)

@@ -167,7 +167,7 @@ HEADER_SECONDS = 1.5
 
 
 class GraphListeners:
-    """What is received while the graph is observed: transforms, and headers if they are asked for."""
+    """What is received while the graph is observed: transforms, headers, descriptions."""
 
     def __init__(self, session: GraphSession) -> None:
         self._session, self._request = session, session.request
@@ -196,7 +196,7 @@ class GraphListeners:
     def update(self, endpoints: Sequence[End]) -> None:
         """Subscribe to the topics that are published now."""
         self.tf.update(endpoints, self._request.substitutes)
-        if self._request.headers:
+        if not self._request.substitutes:
             self.headers.update(endpoints)
             self.descriptions.update(endpoints)
 

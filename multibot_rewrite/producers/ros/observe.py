@@ -60,7 +60,6 @@ from multibot_rewrite.system.records import (
     Caveat,
     End,
     Environment,
-    Heard,
     System,
 )
 
@@ -170,7 +169,9 @@ def watch(session: GraphSession) -> Iterator[System]:
             if listened >= AGAIN_SECONDS:
                 since = clock
                 ears.listen_again(endpoints)
-        state = (*graph, ears.tf.transforms(), _without_rates(*heard))
+        # A rate is another one each time: whether it is low counts.
+        named = [(it.topic, it.frame, it.child, it.joints, 0 < it.rate < 1) for it in heard[0]]
+        state = (*graph, ears.tf.transforms(), named, heard[1])
         pause = _pause_after(time.thread_time() - began, PAUSE_FACTOR)
         if state != before:
             before, changed = state, now
@@ -190,12 +191,6 @@ def watch(session: GraphSession) -> Iterator[System]:
             if new or other:
                 yield with_answers(seen, answers.states, answers.asked)
         spent = time.thread_time() - began
-
-
-def _without_rates(heard: Iterable[Heard], found: object) -> tuple[object, ...]:
-    """Return what a change in makes another state: whose rate is low, but no rate."""
-    named = {(it.topic, it.frame, it.child, it.joints, 0 < it.rate < 1) for it in heard}
-    return named, found
 
 
 def _ask(session: GraphSession, asked: Iterable[Question]) -> Iterable[Answer]:
@@ -338,12 +333,10 @@ def _snapshot(
         round(seconds, 2),
         tuple(caveats),
     )
-    tf = ears.tf
-    edges = assemble.frames(tf.transforms(), placed, tf.of_several(), tf.last, tf.rates(), tf.ages)
     return System(
         tuple(nodes),
         placed,
-        tuple(edges),
+        tuple(ears.tf.edges(placed)),
         around,
         heard,
         descriptions=descriptions,

@@ -32,8 +32,8 @@ class Request(NamedTuple):
     The observation ends when the nodes and topics of ``expected`` (full names) are in the graph, and
     after ``timeout`` seconds at the latest. The snapshot has QoS and process of these topics. With
     ``watch`` it does not end, and there is a snapshot after each change. With ``substitutes``
-    transforms are also read from the messages that a rehearsal has without tf2_msgs. With
-    ``headers`` one message a sensor topic is received, for its frame. With
+    transforms are also read from the messages that a rehearsal has without tf2_msgs; without it one
+    message a sensor topic is received, for its frame. With
     ``asks`` nodes of a watched graph are asked for their states, each for these parameters besides.
     With ``shows`` what is seen is sent once while it is waited whether more comes.
     """
@@ -42,7 +42,6 @@ class Request(NamedTuple):
     expected: tuple[str, ...] = ()
     watch: bool = False
     substitutes: bool = False
-    headers: bool = False
     asks: Mapping[str, Collection[str]] | None = None
     shows: bool = False
 

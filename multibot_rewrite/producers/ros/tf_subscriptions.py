@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import Any, NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, ReceivedTransform, age_of, numbers_of
-from multibot_rewrite.system.records import PUBLISHES, Caveat, End
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Edge, End
 
 # So many times between two messages say how often they come, and more do not say more.
 ENOUGH, MOST = 3, 50
@@ -80,19 +81,25 @@ def _topic(end: End) -> Topic:
     return end.name, end.type, bool(end.qos and end.qos.durability == "TRANSIENT_LOCAL")
 
 
+class _Received(NamedTuple):
+    """One transform: when it came, its last numbers, empty if latched ones differ, and its age."""
+
+    at: float
+    numbers: tuple[float, ...]
+    voices: Voices
+    pace: Pace = Pace()
+    age: float = 0.0
+
+
 class TfSubscriptions:
-    """Subscriptions to all tf topics; ``last`` has each transform, empty if latched ones differ."""
+    """Subscriptions to all tf topics, and what has come of each transform."""
 
     def __init__(self, subscribe: Subscribe) -> None:
         self._subscribe = subscribe
         self._open: dict[Topic, Callable[[], None]] = {}
         self._senders: set[End] = set()
         self._failed: dict[str, str] = {}
-        self._received: dict[ReceivedTransform, float] = {}
-        self._voices: dict[ReceivedTransform, Voices] = {}
-        self.last: dict[ReceivedTransform, tuple[float, ...]] = {}
-        self.ages: dict[ReceivedTransform, float] = {}
-        self._paces: dict[ReceivedTransform, Pace] = {}
+        self._received: dict[ReceivedTransform, _Received] = {}
         self._began = time.monotonic()
 
     def update(self, endpoints: Iterable[End], substitutes: bool) -> None:
@@ -106,8 +113,11 @@ class TfSubscriptions:
         )
         self._senders = senders
         # Who comes after a sender that left is no second one; what is latched comes again.
-        self._voices = {it: own for it, own in self._voices.items() if it[:2] in there - left}
-        self._received = {it: at for it, at in self._received.items() if it[:2] in there}
+        self._received = {
+            it: own._replace(voices=Voices()) if it[:2] in left else own
+            for it, own in self._received.items()
+            if it[:2] in there
+        }
         for topic in [it for it in self._open if it not in topics or (it[2] and it[::2] in left)]:
             self._open.pop(topic)()
         for topic in sorted(topics - self._open.keys()):
@@ -125,33 +135,39 @@ class TfSubscriptions:
         for transform in getattr(message, "transforms", (message,)):
             parent, child = transform.header.frame_id, transform.child_frame_id
             edge = ReceivedTransform(topic, latched, parent, child)
-            self._received[edge] = now
+            old, numbers = self._received.get(edge), numbers_of(transform.transform)
+            voices = (old.voices if old else Voices()).after(mark)
+            # What several latched publishers have each in another way is nowhere.
+            differ = latched and old and old.numbers != numbers and voices.several(True)
+            new = _Received(now, () if differ else numbers, voices)
             if not latched:
-                pace = self._paces.get(edge, Pace())
-                self._paces[edge] = pace.after(transform.header.stamp)
+                pace = (old.pace if old else Pace()).after(transform.header.stamp)
                 # The youngest: a message may be late.
                 age = age_of(transform.header.stamp)
-                self.ages[edge] = min(self.ages.get(edge, age), age, key=abs)
-            self._voices[edge] = self._voices.get(edge, Voices()).after(mark)
-            now_at, before = numbers_of(transform.transform), self.last.get(edge)
-            # What several latched publishers have each in another way is nowhere.
-            differ = latched and before not in (None, now_at) and self._voices[edge].several(True)
-            self.last[edge] = () if differ else now_at
+                new = new._replace(pace=pace, age=min(old.age if old else age, age, key=abs))
+            self._received[edge] = new
 
     def transforms(self) -> tuple[ReceivedTransform, ...]:
         """Return the transforms that are still valid; latched ones always are."""
         limit = time.monotonic() - FORGET_SECONDS
-        return tuple(sorted(it for it, at in self._received.items() if it.latched or at >= limit))
+        valid = (it for it, own in self._received.items() if it.latched or own.at >= limit)
+        return tuple(sorted(valid))
 
-    def rates(self) -> dict[ReceivedTransform, float]:
-        """Return how often each transform came that one publisher sends, if known."""
-        several = self.of_several()
-        found = {it: pace.rate() for it, pace in self._paces.items() if it not in several}
-        return {it: rate for it, rate in found.items() if rate}
-
-    def of_several(self) -> frozenset[ReceivedTransform]:
-        """Return the transforms that more than one publisher sends."""
-        return frozenset(it for it, heard in self._voices.items() if heard.several(it.latched))
+    def edges(self, endpoints: Iterable[End]) -> Iterator[Edge]:
+        """Yield the transforms that are still valid, each once a topic; static if latched ones came."""
+        sent = (it for it in endpoints if (it.kind, it.role) == (TOPIC, PUBLISHES))
+        senders = sets_by_key((it.name, it.node) for it in sent)
+        alike = lists_by_key(((it.topic, it.parent, it.child), it) for it in self.transforms())
+        for (topic, parent, child), own in sorted(alike.items()):
+            known = [self._received[it] for it in own]
+            several = any(
+                one.voices.several(it.latched) for it, one in zip(own, known, strict=True)
+            )
+            rate = 0.0 if several else known[0].pace.rate()
+            yield Edge(
+                child, parent, topic, own[-1].latched, tuple(sorted(senders[topic])), several,
+                known[-1].numbers, rate, age=known[0].age,
+            )  # fmt: skip
 
     def keep_waiting(self, first: float, last: float) -> bool:
         """Return whether to wait longer: ``first`` seconds always, ``last`` while a topic is silent."""

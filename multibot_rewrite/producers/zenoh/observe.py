@@ -12,7 +12,7 @@ from itertools import zip_longest
 from typing import NamedTuple
 
 from multibot_rewrite.base.wording import FEW, SEVERAL, plural, shorten
-from multibot_rewrite.producers.ros.assemble import TF_TYPES, frames
+from multibot_rewrite.producers.ros.assemble import TF_TYPES
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
 from multibot_rewrite.producers.zenoh import SPACE, tokens
@@ -183,9 +183,7 @@ def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Cav
     nodes = tuple(tokens.nodes(seen.tokens))
     ends = tuple(tokens.endpoints(seen.tokens))
     tf, caveats = seen.tf, [*caveats]
-    heard = (
-        frames(tf.transforms(), ends, tf.of_several(), tf.last, tf.rates(), tf.ages) if tf else ()
-    )
+    heard = tf.edges(ends) if tf else ()
     if seen.strange:
         text = f"{plural(len(seen.strange), 'token')} left out, not as rmw_zenoh writes them"
         caveats.append(Caveat("strange-token", False, f"{text}: {shorten(seen.strange, FEW)}"))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 
 from lxml.etree import _Element
 
@@ -260,11 +260,9 @@ def odd_interface(subject: Subject) -> Iterator[Problem]:
             "ros2_control", "sensor", "gpio", "command_interface", "state_interface"
         ):
             name = it.get("name")
-            if name is not None and (not name.strip() or _is_odd(it.tag, name.split())):
+            words = (name or "").split()
+            # Drivers name registers with blanks, but no standard interface.
+            is_slip = not it.tag.endswith("_interface") or not STANDARD.isdisjoint(words)
+            if name is not None and (not words or (len(words) > 1 and is_slip)):
                 hint = "" if name.strip() else "give it a name"
                 yield Problem(it, f"<{it.tag}> has the name {name!r}", "name", hint)
-
-
-def _is_odd(tag: str, words: Collection[str]) -> bool:
-    """Return whether white space inside a name is a slip, not the way a driver names its registers."""
-    return len(words) > 1 and (not tag.endswith("_interface") or not STANDARD.isdisjoint(words))

@@ -133,8 +133,8 @@ def _child_faults(
         return
     row = _of_version(rows, version)
     if row.first > version:
-        message = f"<{tag}> in <{home}> is of SDF {_version_text(row.first)}"
-        hint = f"leave it out: Gazebo of this release reads up to SDF {_version_text(version)}"
+        message = f"<{tag}> in <{home}> is of SDF {'.'.join(map(str, row.first))}"
+        hint = f"leave it out: Gazebo of this release reads up to SDF {'.'.join(map(str, version))}"
         yield fault("later", child, None, message, hint)
         return
     yield from _value_faults(child, "", row, text_of(child), known, version)
@@ -310,7 +310,3 @@ def _parents_in_sdf(tag: str) -> tuple[str, ...]:
         if f"\n{tag} " in part and not part.startswith((WORDS, "urdf"))
     }
     return tuple(sorted(found)) if 0 < len(found) <= 3 else ()
-
-
-def _version_text(version: Version) -> str:
-    return ".".join(map(str, version))

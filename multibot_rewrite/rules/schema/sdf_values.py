@@ -8,7 +8,7 @@ in a plugin it counts as 0 or false.
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
 from math import isinf, tau
 from typing import NamedTuple
@@ -71,13 +71,9 @@ def _misread_unsigned(text: str) -> Misread | None:
     return _misread_number(text, whole=True)
 
 
-def _misread_boolean(text: str) -> Misread | None:
-    return None if text.lower() in _TRUTHS else Misread("is neither true nor false", True)
-
-
-def _misread_truth(text: str) -> Misread | None:
-    known = text.lower() in (*_TRUTHS, "yes", "no")
-    return None if known else Misread("is neither true nor false", False)
+def _misread_boolean(text: str, *, more: Sequence[str] = ()) -> Misread | None:
+    known = text.lower() in (*_TRUTHS, *more)
+    return None if known else Misread("is neither true nor false", not more)
 
 
 def _misread_numbers(text: str, *, count: int) -> Misread | None:
@@ -113,7 +109,7 @@ CHECKS: dict[str, Callable[[str], Misread | None]] = {
     **dict.fromkeys(("int", "integer"), partial(_misread_number, whole=True)),
     "unsigned_int": _misread_unsigned,
     **dict.fromkeys(("bool", "boolean"), _misread_boolean),
-    "truth": _misread_truth,
+    "truth": partial(_misread_boolean, more=("yes", "no")),
     "vector2d": partial(_misread_numbers, count=2),
     **dict.fromkeys(("vector", "vector3"), partial(_misread_numbers, count=3)),
     "pose": partial(_misread_pose, size=6),

@@ -167,14 +167,15 @@ def why_other_name(plan: Index, node: str, match: str) -> Cause:
     way, taker = _way_in(plan, node)
     if way == HOST:
         return Cause(f"{match} is running in the process of {taker}: start {taker} as planned")
-    missing, rule = "name", Remap(match, "__node", node.rpartition("/")[2])
+    above, _, last = node.rpartition("/")
+    missing, rule = "name", Remap(match, "__node", last)
     if namespaced:
-        missing, rule = "namespace", Remap(match, "__ns", f"/{space}")
+        missing, rule = "namespace", Remap(match, "__ns", above)
     option = f"--ros-args -r {rule.old}:={rule.new}"
     if way == COMPONENT:
         option = f"{missing}={rule.new!r} of its ComposableNode"
     elif namespaced:
-        option = f"namespace={space!r} in the launch file, or {option}"
+        option = f"namespace={above[1:]!r} in the launch file, or {option}"
     why = f"{match} is running: it was started without the robot's {missing}"
     return Cause(f"{why}; use {option}", remaps=(rule,))
 

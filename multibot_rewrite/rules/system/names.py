@@ -242,11 +242,20 @@ def _how_to_join(seen: Index, readers: Sequence[End], other: Ends, sender: str) 
         return Cause(hint, remaps=(Remap(sender, other.name, end.name),))
     misplaced = owner not in ("", seen.robot(other.name)) and other.name not in EVERYBODYS
     all_robots = misplaced and _serves_all(seen, end.name, senders)
-    if misplaced and not all_robots:
+    # By a plan the reader is right.
+    misplaced |= _is_planned(seen, end) and not any(
+        _is_planned(seen, it) for it in other.publishers
+    )
+    if misplaced and not all_robots and other.type == end.type:
         # That of another robot is sent there as well.
         own = [it for it in senders if seen.robot(it) == owner] or senders
         hint = f"pass the rule {other.name}:={end.name} to {shorten(own)}, or start it in the namespace"
         return Cause(hint, remaps=tuple(Remap(it, other.name, end.name) for it in own))
+    robot, likes = seen.robot(other.name), _robots_with_node(seen).get(end.node, set())
+    if robot and likes - {""} and robot not in likes and not seen.robot(end.node):
+        space = other.name.removesuffix(seen.plain(other.name))
+        hint = f"start it in the namespace of {robot}, with -r __ns:={space}"
+        return Cause(hint, remaps=(Remap(end.node, "__ns", space),))
     if look := _where_to_look(seen, end, other, sender, all_robots):
         return Cause(look)
     each, set_ = " to each" if len(readers) > 1 else "", f"write {other.name} in its parameters"
@@ -260,8 +269,7 @@ def _where_to_look(seen: Index, end: End, other: Ends, sender: str, all_robots: 
     if other.type != end.type:
         return f"make both one type: set it in a parameter of one side, or convert {other.name}"
     alone = words.is_never_shared(seen.plain(end.name), end.type)
-    planned = seen.expected and (end.node, end.kind, end.role, end.name) in seen.expected.by_key
-    if all_robots and (alone or planned):
+    if all_robots and (alone or _is_planned(seen, end)):
         shared = "" if alone else f", or put {other.name} in shared_topics of the fleet file"
         return f"{sender} sends it to all robots: start one for each, in its namespace{shared}"
     if _are_stages(end, other):
@@ -270,6 +278,12 @@ def _where_to_look(seen: Index, end: End, other: Ends, sender: str, all_robots: 
     if is_of_another_kind(seen, end, other):
         return f"start what sends {end.name}: {other.name} may be of another sensor or place"
     return ""
+
+
+def _is_planned(seen: Index, end: End) -> bool:
+    """Return whether a plan has this end."""
+    planned = seen.expected.by_key if seen.expected else ()
+    return (end.node, end.kind, end.role, end.name) in planned
 
 
 def _serves_all(seen: Index, name: str, senders: Sequence[str]) -> bool:

@@ -141,7 +141,7 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
         rule = _broken_rule(plan, end, robot) or missing_endpoint
         yield rule.finding(
             f"should {TO_DO[planned.role]} {planned.kind} {planned.name}, but does not",
-            **_why_missing(plan, seen, planned, used)._asdict(),
+            **_with_tools(plan, seen, robot, _why_missing(plan, seen, planned, used))._asdict(),
             robot=robot, node=planned.node, names=(planned.name, *[instead] * bool(instead)),
         )  # fmt: skip
     for node, robot in plan.robot_of.items():
@@ -241,6 +241,17 @@ def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
     types = (it.type for it in _unplanned(plan, seen, planned) if it.name == used)
     alike = all(it in ("", planned.type) for it in types) or not planned.type
     return cause._replace(remaps=(Remap(planned.node, used, planned.name),) if alike else ())
+
+
+def _with_tools(plan: Index, seen: Index, robot: str, cause: Cause) -> Cause:
+    """Return a cause whose rules are also for the robot's tools, such as RViz, which no plan has."""
+    for rule in cause.remaps:
+        users = unique(it.node for it in ends_of(seen, rule.old) if seen.is_tool(it.node))
+        tools = [it for it in users if it not in plan.node and seen.robot(it) == robot]
+        if tools:
+            rules = (*cause.remaps, *(rule._replace(node=it) for it in tools))
+            return cause._replace(hint=f"{cause.hint}; {shorten(tools)} too", remaps=rules)
+    return cause
 
 
 def _why_remapped(plan: Index, planned: End, used: str, instead: str) -> Cause:

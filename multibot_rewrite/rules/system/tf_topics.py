@@ -45,13 +45,12 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
         home = _tf_topic_of(seen, robot, topics)
         others = (it for it in topics if it != home and it not in mixed)
         odd = [it for it in others if not _is_own_topic(seen, robot, topics, it)]
-        yield from (_tf_on_other_topic(seen, robot, home, it, topics[it], "send") for it in odd)
         heard = listeners.get(robot, {})
-        lost = [it for it in heard if it not in topics and it != home]
-        for topic in lost:
-            deaf = [it for it in heard[topic] if it not in heard.get(home, ())]
-            if deaf:
-                yield _tf_on_other_topic(seen, robot, home, topic, deaf, "hear")
+        for topic in unique((*odd, *(it for it in heard if it not in topics and it != home))):
+            deaf = [it for it in heard.get(topic, ()) if it not in heard.get(home, ())]
+            sending = topics.get(topic, ())
+            if sending or deaf:
+                yield _tf_on_other_topic(seen, robot, home, topic, sending, deaf)
     yield from _frames_of_another(seen, senders)
     yield from _frames_on_foreign_topic(seen, senders)
     yield from _rviz_hears_nothing(seen)
@@ -228,15 +227,25 @@ def _named_on_shared(seen: Index) -> Mapping[str, Set[str]]:
 
 
 def _tf_on_other_topic(
-    seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str], verb: str
+    seen: Index,
+    robot: str,
+    home: str,
+    topic: str,
+    sending: Sequence[str],
+    deaf: Sequence[str],
 ) -> Finding:
-    does = f"{verb}s" if len(nodes) == 1 else verb
-    message = f"{shorten(nodes)} {does} tf on {topic}, but the tf of {robot} is on {home}"
+    """Return the finding about the nodes of a robot that send on another tf topic, or hear that one."""
+    first, verb = (sending, "send") if sending else (deaf, "hear")
+    nodes = unique((*sending, *deaf))
+    does = f"{verb}s" if len(first) == 1 else verb
+    message = f"{shorten(first)} {does} tf on {topic}, but the tf of {robot} is on {home}"
     other = seen.robot(topic)
     # tf2 asks for /tf: a rule for the name that another rule made is none.
     target = "tf" if home.startswith(f"/{seen.of_names.tag(robot)}/") else home
     rules = f"-r /{TF}:={target} -r {static_topic(f'/{TF}')}:={static_topic(target)}"
-    hint = f"pass {rules} to each node; if it shares a process, to the whole process"
+    more = [it for it in nodes if it not in first]
+    also = f", as well as to {shorten(more)}, which hear it" if more else ""
+    hint = f"pass {rules} to each node{also}; if it shares a process, to the whole process"
     if home == f"/{TF}":
         hint = f"leave out its rules for {home} and {static_topic(home)}, or start it without them"
     if other not in ("", robot):

@@ -159,24 +159,24 @@ def _how_to_part(seen: Index, tree: Tree, robots: Sequence[str]) -> Cause:
         return Cause(f"{named}; {senders}")
     if seen.robot(tree.topic):
         return Cause(f"start the nodes of one of the two in another namespace; {senders}")
-    rules = "pass -r /tf:=tf -r /tf_static:=tf_static to every node of a robot"
     nodes = [it for it in (*tree.senders, *tree.listeners) if it.startswith(f"/{seen.robot(it)}/")]
-    own = rules if nodes else f"give each robot a namespace and {rules}"
     remaps = (
         it
         for node in nodes
         for it in tf_remaps([node], tree.topic, f"{node.rpartition('/')[0]}{tree.topic}")
     )
     # One without a namespace may keep the topic.
-    whole = len(robots) - 1 <= len(robots_of(seen, nodes))
-    own += ", or put its name into its frames (urdf-postfix)"
-    return Cause(f"{own}; {senders}", remaps=tuple(remaps) if whole else ())
+    whole = bool(nodes) and len(robots) - 1 <= len(robots_of(seen, nodes))
+    own = "pass -r /tf:=tf -r /tf_static:=tf_static to every node of a robot"
+    own = own if whole else "give each robot a namespace of its own, with tf in it"
+    named = "or put its name into its frames (urdf-postfix)"
+    return Cause(f"{own}, {named}; {senders}", remaps=tuple(remaps) if whole else ())
 
 
 def tf_remaps(nodes: Iterable[str], topic: str, home: str) -> tuple[Remap, ...]:
     """Return the rules that move nodes from one tf topic to another, with the static one."""
-    pairs = (topic, home), (static_topic(topic), static_topic(home))
-    return tuple(Remap(node, *pair) for node in nodes for pair in pairs)
+    pairs = {static_topic(topic): static_topic(home), topic: home}
+    return tuple(Remap(node, *pair) for node in nodes for pair in reversed(pairs.items()))
 
 
 @system_rule("MG403", "tf-cycle", ERROR)

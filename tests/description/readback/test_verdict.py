@@ -117,6 +117,8 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
             '<robot name="r"><webots><plugin type="webots_ros2_driver::Ros2IMU"/></webots></robot>',
             (),
         ),
+        # urdfdom's parsers read no <parent> that is in no joint.
+        ('<robot name="r"><link name="a"/><parent link="a"/></robot>', ()),
         # MulticopterMotorModel.cc: below the model's name; LiftDragPlugin.cc opens what values name.
         (SIMULATED.format("gz-sim-multicopter-motor-model-system"), ()),
         (SIMULATED.format("libLiftDragPlugin.so"), ()),

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import shlex
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -47,3 +49,32 @@ def test_a_folder_without_a_robot_that_can_be_told(kind: str, tmp_path: Path, ca
     assert SAYS[kind] in said
     assert len(said.splitlines()) == 1
     assert not fleet.parent.exists()
+
+
+def test_a_robot_that_only_a_world_has_is_told_with_the_commands(
+    tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As the tutorials of Gazebo have theirs; what is printed is run, as a shell and init do."""
+    launch = """from launch import LaunchDescription
+from launch.actions import ExecuteProcess
+def generate_launch_description():
+    return LaunchDescription([ExecuteProcess(cmd=['gz', 'sim', 'WORLD'])])
+"""
+    world = """<sdf version="1.8"><world name="w">
+<model name="box"><link name="l"/></model>
+<model name="car"><link name="l"/><link name="r"/>
+<joint name="j" type="revolute"><parent>l</parent><child>r</child></joint>
+<plugin filename="gz-sim-joint-state-publisher-system" name="gz::sim::systems::JointStatePublisher"/>
+</model>
+</world></sdf>
+"""
+    monkeypatch.chdir(tmp_path)
+    files = {"w.sdf": world, "go.launch.py": launch.replace("WORLD", f"{tmp_path}/w.sdf")}
+    write_files(tmp_path, files)
+    assert main(["init", ".", "--yes"]) == 2
+    said = capsys.readouterr().err
+    command, _, again = said.partition("a file of its own, ")[2].partition("; multibot ")
+    subprocess.run(command, shell=True, check=True)
+    assert main([*shlex.split(again), "--yes"]) == 0
+    text = (tmp_path / "fleet.yaml").read_text()
+    assert "description: car.sdf\n" in text and "launch: go.launch.py\n" in text

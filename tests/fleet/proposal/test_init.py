@@ -468,3 +468,15 @@ def test_the_reason_names_the_node_and_what_to_do_once_for_all_robots(tmp_path: 
         "/robot1/controller_manager)"
     )
     assert [it for _, it in trying.errors_of(steered(tmp_path))] == [said]
+
+
+def test_a_controller_that_a_vendor_spawns_has_no_rule_that_he_has_not(tmp_path: Path) -> None:
+    """He has no odometry on tf for one robot either: that is no reason to refuse two."""
+    (tmp_path / "go.launch.py").write_text(
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+        "def generate_launch_description():\n    return LaunchDescription([Node(\n"
+        "        package='controller_manager', executable='spawner',\n"
+        "        arguments=['bicycle_steering_controller'])])\n"
+    )
+    fleet = steered(tmp_path) | {"launch": str(tmp_path / "go.launch.py")}
+    assert [it for _, it in trying.errors_of(fleet) if "MG102" in it] == []

@@ -7,7 +7,6 @@ It ends when its parent does, or when it was asked for nothing for a while.
 
 from __future__ import annotations
 
-import gc
 import json
 import os
 import select
@@ -60,9 +59,6 @@ def main() -> None:
         with suppress(ImportError):
             __import__(name)
     run_xacro.missing()
-    # A collection would write to every page that a child shares with this process.
-    gc.disable()
-    gc.freeze()
     children: set[int] = set()
     while _serve_next(control, children):
         pass

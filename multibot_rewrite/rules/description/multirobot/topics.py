@@ -109,7 +109,8 @@ def absolute_topic(subject: Subject) -> Iterator[Problem]:
     shared = subject.settings.naming.shared_topics | set(TF_TOPICS)
     for claim in claims_of(subject, ROS_KINDS):
         name = _target(claim)
-        if name[:1] != "/" or not is_plain(name) or _is_of_gz(claim) or name.strip("/") in shared:
+        is_gz = claim.site.section.startswith(GZ_SECTIONS)
+        if name[:1] != "/" or not is_plain(name) or is_gz or name.strip("/") in shared:
             continue
         # MB426 reports these.
         above = claim.element.iterancestors("plugin") if claim.site.form in REMAP_FORMS else ()
@@ -130,7 +131,7 @@ def _target(claim: Claim) -> str:
 @rule("MB402", "gz-topic-shared", NOTE)
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Report literal gz topics."""
-    claims = [it for it in claims_of(subject, ROS_KINDS) if _is_of_gz(it)]
+    claims = [it for it in claims_of(subject, ROS_KINDS) if it.site.section.startswith(GZ_SECTIONS)]
     if not claims or _is_classic(subject):
         return
     for claim in claims:
@@ -140,10 +141,6 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
             message = f"{tag_of(claim)} {topic!r} is the same gz topic for every copy of the robot"
             hint = "leave it out, or set one for each robot"
             yield Problem(claim.element, message, claim.attribute, hint)
-
-
-def _is_of_gz(claim: Claim) -> bool:
-    return claim.site.section.startswith(GZ_SECTIONS)
 
 
 def _is_classic(subject: Subject) -> bool:

@@ -72,15 +72,14 @@ def camera_at_optical_frame(subject: Subject) -> Iterator[Problem]:
             continue
         for joint in subject.robot.above.get(it.link.name, ())[:1]:
             own = origin_of(joint.element)
-            if own and _is_optical(own) and turned(it.pose.matrix, X)[0] > SAME:
+            # To the right of the parent with x, forward with z.
+            is_optical = (
+                own and dot(turned(own.matrix, X), Y) < -SAME and turned(own.matrix, Z)[0] > SAME
+            )
+            if is_optical and turned(it.pose.matrix, X)[0] > SAME:
                 names = f"{it.link.name!r} looks to the right of {joint.parent!r}"
                 hint = f"put it at {joint.parent!r}"
                 yield Problem(it.element, f"camera at optical frame {names}", None, hint)
-
-
-def _is_optical(pose: Pose) -> bool:
-    """Return whether a pose turns x to the right of the parent, and z forward."""
-    return dot(turned(pose.matrix, X), Y) < -SAME and turned(pose.matrix, Z)[0] > SAME
 
 
 @rule("MB627", "sensor-in-ground", WARNING)

@@ -13,6 +13,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.nearest import slip_of
 from multibot_rewrite.base.outside import is_folder, is_there
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.description.checks.links_and_joints import Joint
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.text import text_of
@@ -100,7 +101,7 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     named = driven_joints(subject)
     left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
-        names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
+        names = shorten((it.name for it in left), SEVERAL)
         message = f"nothing drives the joint{'s' * (len(left) > 1)} {names}"
         hint = "add to <ros2_control> what moves; publish the state of a passive joint"
         yield Problem(left[0].element, message, "name", hint)

@@ -25,9 +25,9 @@ from multibot_rewrite.rules.subject import Subject, name_of
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
     """Report names of one kind, every one except the first."""
     yield from declared_twice(subject)
-    for mild in (repeated_joint, duplicate_transmission, system_twice):
+    for mild in (repeated_joint, system_twice):
         yield from (it._replace(level=WARNING) for it in mild(subject))
-    for fatal in (duplicate_hardware, duplicate_sensor, duplicate_material, one_node_twice):
+    for fatal in (duplicate_part, duplicate_sensor, one_node_twice):
         yield from fatal(subject)
 
 
@@ -68,14 +68,6 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
             yield Problem(it, message, "name", "put its interfaces in one element")
 
 
-def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
-    """Report every hardware component whose name another one has."""
-    systems = subject.elements.tops("ros2_control")
-    for it in _repeated((name_of(system), system) for system in systems if name_of(system)):
-        message = f"there is another <ros2_control> {name_of(it)!r}"
-        yield Problem(it, message, "name", "rename one", level=since_jazzy(subject))
-
-
 def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
     """Report sensors in blocks for one link, or for links that Gazebo merges at fixed joints."""
     root = subject.document.root
@@ -99,13 +91,22 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
         yield Problem(it, message, "name", "rename one", level=level)
 
 
-def duplicate_material(subject: Subject) -> Iterator[Problem]:
-    """Report materials right below the root; a link may repeat one."""
-    materials = subject.elements.tops("material")
-    for it in _repeated((it.get("name"), it) for it in materials if it.get("name")):
-        message = f"material {it.get('name')!r} is defined twice"
-        hint = "delete one: urdfdom rejects both even if they are alike"
-        yield Problem(it, message, "name", hint)
+def duplicate_part(subject: Subject) -> Iterator[Problem]:
+    """Report parts of the robot, right below the root; a link may repeat a material."""
+    alike = "delete one: urdfdom rejects both even if they are alike"
+    for tag, level, message, hint in (
+        (
+            "ros2_control",
+            since_jazzy(subject),
+            "there is another <ros2_control> {!r}",
+            "rename one",
+        ),
+        ("transmission", WARNING, "there is another transmission {!r}", "rename one"),
+        ("material", "", "material {!r} is defined twice", alike),
+    ):
+        tops = subject.elements.tops(tag)
+        for it in _repeated((name_of(one), one) for one in tops if name_of(one)):
+            yield Problem(it, message.format(name_of(it)), "name", hint, level=level)
 
 
 def one_node_twice(subject: Subject) -> Iterator[Problem]:
@@ -137,13 +138,6 @@ def _scope(plugin: _Element) -> object:
     root = plugin.getroottree().getroot()
     whole = above is not None and above.tag == "gazebo" and not above.get("reference")
     return root if whole else above
-
-
-def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
-    """Report transmissions of the robot, not those of a <ros2_control>."""
-    found = subject.elements.tops("transmission")
-    for it in _repeated((name_of(it), it) for it in found if name_of(it)):
-        yield Problem(it, f"there is another transmission {name_of(it)!r}", "name", "rename one")
 
 
 def _repeated(found: Iterable[tuple[object, _Element]]) -> Iterator[_Element]:

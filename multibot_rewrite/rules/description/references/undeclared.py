@@ -23,14 +23,13 @@ from multibot_rewrite.description.checks.references import (
     undeclared_names,
     where,
 )
-from multibot_rewrite.description.readback.active import hardware_class
 from multibot_rewrite.description.rewriters.contact import collisions
 from multibot_rewrite.description.rewriters.own_defaults import frame_sites
 from multibot_rewrite.description.rewriters.renaming import must_be_declared, names_in
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.knowledge.worlds import SIMULATORS
 from multibot_rewrite.rules.facts.memo import lacking, level_of_absence, memoized, since_jazzy
+from multibot_rewrite.rules.facts.simulators import simulated
 from multibot_rewrite.rules.subject import Subject, name_of
 
 # Its joints are those of the simulated PROTO, not of the URDF.
@@ -206,34 +205,31 @@ def _simulated_sensors(subject: Subject) -> frozenset[str]:
 
 def _of_contact_sensors(subject: Subject) -> Iterator[Problem]:
     hinted = iter(range(HINTED))
+    by = "reference" if subject.document.root.tag == "robot" else "name"
     for sensor in (it for it in subject.elements.every("sensor") if it.get("type") == "contact"):
         above = sensor.getparent()
-        link = "" if above is None else above.get("reference") or name_of(above)
+        link = "" if above is None else above.get(by, "")
         own = _collisions(subject).get(subject.robot.body.get(link, link))
-        written = sensor.findall("contact/collision") or [sensor]
-        for it in written if own is not None else ():
-            name = "" if it is sensor else text_of(it)
-            if it is not sensor and name in (own or ()):
-                continue
-            message = f"its link has no collision {name!r}: nothing is reported for it"
-            if it is sensor:
-                message = f"contact sensor {name_of(it)!r} names no collision: it reports nothing"
-            hint = _of_link(own or {}, link, name) if next(hinted, None) is not None else ""
-            yield Problem(it, message, "name" if it is sensor else "", hint)
+        # Without a <collision> its name is the default, which nothing has.
+        asked = {text_of(it): it for it in sensor.iterfind("contact/collision")} or {"": sensor}
+        for name in asked if own is not None else ():
+            if name not in (own or ()):
+                what = f"the collision {name!r}, which its link lacks" if name else "no collision"
+                message = f"contact sensor {name_of(sensor)!r} names {what}"
+                hint = (
+                    _collisions_of(link, own or {}, name) if next(hinted, None) is not None else ""
+                )
+                yield Problem(asked[name], message, "" if name else None, hint)
 
 
-def _of_link(own: Mapping[str, str], link: str, value: str) -> str:
+def _collisions_of(link: str, own: Mapping[str, str], value: str) -> str:
     """Return the hint with the collisions of the link that a value begins with, or of the sensor's."""
     name = value.rpartition("::")[2]
     begun = {it for it in own.values() if name.startswith(it)}
     meant = max(begun, key=len, default=link) if name else link
-    of_link = [it for it, owner in own.items() if owner == meant]
-    names = [name] if name in own else of_link or [*own]
-    return (
-        f"write {' or '.join(map(repr, names[:_LISTED]))}"
-        if names
-        else "give its link a <collision>"
-    )
+    names = [name] if name in own else [it for it, owner in own.items() if owner == meant] or [*own]
+    written = " or ".join(map(repr, names[:_LISTED]))
+    return f"write {written}" if names else "give its link a <collision>"
 
 
 def _of_plugins(subject: Subject) -> Iterator[Problem]:
@@ -252,13 +248,11 @@ def _of_plugins(subject: Subject) -> Iterator[Problem]:
 
 
 def _of_simulated_hardware(subject: Subject) -> Iterator[Problem]:
-    loaded = {it for simulator in SIMULATORS for it in simulator.hardware}
     guesses = Guesses()
-    for system in subject.elements.tops("ros2_control"):
-        class_ = hardware_class(system)
-        for it in system.iterchildren("sensor") if class_ in loaded else ():
+    for system, plugin, _ in simulated(subject):
+        for it in system.iterchildren("sensor"):
             if (name := name_of(it)) not in _simulated_sensors(subject):
-                message = f"{class_} has no sensor {name!r}: its interfaces are not exported"
+                message = f"{text_of(plugin)} has no sensor {name!r}: nothing is exported for it"
                 hint = guesses.hint(name, _simulated_sensors(subject))
                 # It may be one that the real robot alone has.
                 advice = hint or "name it like Gazebo's sensor, or leave it out of the simulation"

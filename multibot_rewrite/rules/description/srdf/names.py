@@ -10,7 +10,7 @@ from functools import partial, wraps
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, WARNING, rule
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.planning_groups import (
     FREE_FLYER,
@@ -28,7 +28,6 @@ from multibot_rewrite.rules.description.references.undeclared import undeclared
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.subject import Subject
 
-SHOWN = 5
 # A rule about an SRDF.
 srdf_rule = partial(rule, formats=(SRDF,))
 
@@ -125,16 +124,13 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
 def stale_pair(subject: Subject) -> Iterator[Problem]:
     """Report names in pairs that the URDF lacks, each once, at its first pair."""
     found = list(undeclared("MB807", subject))
-    names = Counter(_link_of(it) for it in found)
-    for it in found:
-        more = names.pop(_link_of(it), 0) - 1
+    links = [text_of(it.element, it.attribute or "") for it in found]
+    names = Counter(links)
+    for it, link in zip(found, links, strict=True):
+        more = names.pop(link, 0) - 1
         if more >= 0:
             also = f"; {more} more pairs name it" if more else ""
             yield it._replace(message=it.message + also)
-
-
-def _link_of(problem: Problem) -> str:
-    return text_of(problem.element, problem.attribute or "")
 
 
 @srdf_rule("MB809", "duplicate-pair", NOTE)
@@ -147,9 +143,8 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
         if first.setdefault(pair, it) is not it:
             found.append(it)
     if found:
-        names = [f"{text_of(it, 'link1')}-{text_of(it, 'link2')}" for it in found[:SHOWN]]
-        more = ", ..." if len(found) > SHOWN else ""
-        message = f"{plural(len(found), 'pair')} disabled twice: {', '.join(names)}{more}"
+        names = [f"{text_of(it, 'link1')}-{text_of(it, 'link2')}" for it in found]
+        message = f"{plural(len(found), 'pair')} disabled twice: {shorten(names, SEVERAL)}"
         yield Problem(found[0], message, None, "delete the line")
 
 
@@ -190,12 +185,11 @@ def adjacent_links(subject: Subject) -> Iterator[Problem]:
     left = [
         it
         for it in robot.joints
-        if _both_checked(it, robot, alone) and _both_links(it) not in apart
+        if _both_checked(it, robot, alone) and {it.parent, it.child} not in apart
     ]
     if left:
-        names = ", ".join(f"{it.parent}-{it.child}" for it in left[:SHOWN])
-        more = ", ..." if len(left) > SHOWN else ""
-        message = f"{len(left)} pairs of adjacent links are checked: {names}{more}"
+        names = shorten((f"{it.parent}-{it.child}" for it in left), SEVERAL)
+        message = f"{len(left)} pairs of adjacent links are checked: {names}"
         yield Problem(pairs[0], message, None, 'disable them with reason="Adjacent"')
 
 
@@ -203,13 +197,9 @@ def _has_shape(robot: Robot, link: str) -> bool:
     return robot.link[link].element.find("collision") is not None
 
 
-def _both_links(joint: Joint) -> frozenset[str]:
-    return frozenset((joint.parent, joint.child))
-
-
 def _both_checked(joint: Joint, robot: Robot, alone: set[str]) -> bool:
     """Return whether both links of a joint are checked against each other."""
-    ends = _both_links(joint)
+    ends = {joint.parent, joint.child}
     return len(ends) == 2 and all(
         it in robot.link and it not in alone and _has_shape(robot, it) for it in ends
     )
