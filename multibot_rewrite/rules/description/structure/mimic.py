@@ -186,7 +186,8 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
                 text = it.get(name, "$")
                 if "$" not in text and not re.fullmatch(pattern, text.strip()):
                     message = f"{name} is {text!r}, not {words}"
-                    yield Problem(it, message, name, level=NOTE if since_jazzy(subject) else "")
+                    level = NOTE if since_jazzy(subject) else ""
+                    yield Problem(it, message, name, f"write {words}", level=level)
         for it in (param for one in interfaces for param in one.iterchildren("param")):
             text = text_of(it)
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
