@@ -86,11 +86,6 @@ class BridgeRow(NamedTuple):
     frame: str
 
 
-def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
-    """Yield the ROS ends of the rows of a ros_gz_bridge file."""
-    yield from (it.end for it in bridge_rows(document, above))
-
-
 def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
     """Yield the rows of a ros_gz_bridge file in a namespace; one of both directions has no role."""
     for row in items(as_loaded(document).root):

@@ -106,7 +106,7 @@ def as_loaded(document: YamlText, release: str = OF_OLD) -> YamlText:
     for node in dict.fromkeys((*keys, *ways)) if release == OF_OLD else ():
         start, end = node.start_mark.index, node.end_mark.index
         new = _OF_IGNITION[node.value].join(text[start:end].rsplit(node.value, 1))
-        padded = new.ljust(end - start) if node in keys else new.rjust(end - start)
+        padded = (new.ljust if node in keys else new.rjust)(end - start)
         text = text[:start] + padded + text[end:]
     root = document.root if text == document.text else compose_yaml(text, document.file)
     return document._replace(text=text, root=root)
