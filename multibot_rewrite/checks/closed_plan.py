@@ -34,7 +34,7 @@ from multibot_rewrite.fleet.robots.simulators import unread_drives
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.planning.bridged_topics import BOTH, once
-from multibot_rewrite.producers.ends import BRIDGE_FILE, NEEDS, bridge_ends
+from multibot_rewrite.producers.ends import BRIDGE_FILE, NEEDS, bridge_rows
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.launch.bridges import services_in
 from multibot_rewrite.rules.check import absences, contradictions
@@ -234,7 +234,7 @@ def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...
     left |= {BRIDGE_FILE} if len(real) == len(plan.robots) else set()
     bridges = (it for it in texts if it.path.rpartition("/")[2] == BRIDGE_FILE)
     files = [it for it in bridges if it.path not in left]
-    rows = (end for it in files for end in bridge_ends(it.yaml))
+    rows = (row.end for it in files for row in bridge_rows(it.yaml))
     topics = [Topic(it.name, bridge=(it.role,) if it.role else BOTH, type=it.type) for it in rows]
     if any(it.path == BRIDGE_FILE for it in files):
         served = (it.end for it in services_in(plan.launched_words).values())

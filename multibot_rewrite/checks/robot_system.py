@@ -23,6 +23,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     own_yaml,
     path_for,
 )
+from multibot_rewrite.fleet.robots.fitting.sensors import bridge_rows_of
 from multibot_rewrite.fleet.robots.member import without_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
@@ -39,7 +40,6 @@ from multibot_rewrite.producers.ends import (
     BRIDGE_NODE,
     NEEDS,
     TF,
-    bridge_ends,
     bridge_rows,
     edge,
     edges_off,
@@ -134,14 +134,11 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
         for it in lookups_of(run)
     ]
     lookups += (it for it in virtual_lookups(said) if it.frame not in moved)
-    rows = (
-        row
-        for it in _documents(robot, "bridge")
-        for row in bridge_ends(it, robot.spec.bridge_namespace_of(it.file))
-    )
+    rows = (it.end for it in bridge_rows_of(robot.spec))
     own = _system((*runs, *plugins), rows, edges)._replace(lookups=tuple(lookups))
     exports = (_plain_export(robot, it) for it in exported(source.root, source.file))
-    own = _with_interfaces(own, plain, evidence, exports, _documents(robot, "moveit"), said)
+    moveit = [own_yaml(robot.spec, it) for it in robot.spec.related_files.get("moveit", ())]
+    own = _with_interfaces(own, plain, evidence, exports, moveit, said)
     return beside(own, _system(it for it in alone if it.fact.shared))
 
 
@@ -221,7 +218,7 @@ def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge]
 def _bridge_ends(bridges: Iterable[OutputFile], home: str) -> Iterator[End]:
     """Yield the ends of bridges that run in a namespace."""
     for text in bridges:
-        for it in bridge_ends(text.yaml):
+        for it, *_ in bridge_rows(text.yaml):
             place = Place(*line_in_source(text, it.place.line)) if text.sources else NOWHERE
             yield it._replace(node=f"{home}/{BRIDGE_NODE}", place=place)
 
@@ -328,8 +325,3 @@ def _plain_run(robot: RewrittenRobot, given: Run) -> Run:
             value = own.get(value, value)
         values[key] = it._replace(value=value)
     return given._replace(values=values)
-
-
-def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
-    """Return the robot's related files of a kind."""
-    return [own_yaml(robot.spec, path) for path in robot.spec.related_files.get(kind, ())]

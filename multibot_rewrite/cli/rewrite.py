@@ -7,10 +7,11 @@ import argparse
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.findings.finding import RewriteRefused
+from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import FRAME_KINDS, SEPARATORS, TOPIC_KINDS
 from multibot_rewrite.base.releases import facts_of_release, release_doubt, why_here
 from multibot_rewrite.base.wording import plural
@@ -33,11 +34,14 @@ from multibot_rewrite.cli.rewrite_use import (
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.description.checks.meeting import given, not_verified
-from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
+from multibot_rewrite.description.library import Rewrite, explain, rewrite_all, strip
 from multibot_rewrite.description.readback.meeting import NUMBERED
 from multibot_rewrite.description.sources.job import read_whole
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import Source
+
+if TYPE_CHECKING:
+    from multibot_rewrite.description.reports.explain import Explanation
 
 # What the summary calls a kind whose own word says little; the others are their own word.
 WORDS = {"stem": "topic prefix"}
@@ -46,9 +50,7 @@ WORDS = {"stem": "topic prefix"}
 def run(options: argparse.Namespace) -> int:
     """Rewrite, undo or explain; returns the exit code."""
     if options.why is not None:
-        from multibot_rewrite.cli import why
-
-        return why.run(options)
+        return _explain(options)
     target = None if options.output == STANDARD else options.output
     options.output = (
         target if options.output_kind == CHANGES else below(target, options.input or "")
@@ -197,3 +199,62 @@ def summary(
     end = f"Not verified: {', '.join(why)}" if why else verified
     end += facts_of_release(first.distro, of_release, first.prepared.job.ros)
     return f"{who}: {renamed}{added}. {end}"
+
+
+def _explain(options: argparse.Namespace) -> int:
+    """Print an explanation of every value on the line that ``--why`` names."""
+    from multibot_rewrite.cli.tables import deliver_report
+    from multibot_rewrite.related_files.named_file import is_related_file
+
+    path, line = _file_and_line(options.why)
+    if is_related_file(path):
+        raise UsageError(f"--why is for descriptions, {path} is none; --diff shows what changes")
+    # The file is in the option: what stands first is a robot or a xacro argument.
+    options.words[:0] = [options.input] if options.input else []
+    robot = next(iter(robots(options)), "robot1")
+    options.definitions = [*configured_definitions(path), *options.definitions]
+    found = explain(path, line, robot, **rewriting(options))
+    if not found:
+        raise UsageError(f"{options.why}: no value starts on this line; name another")
+    deliver_report(options, (line for it in found for line in _explanation_lines(it, path, robot)))
+    return DONE
+
+
+def _file_and_line(text: str) -> tuple[str, int]:
+    """Return path and line of ``FILE:LINE``; raises UsageError for another text."""
+    path, colon, line = text.rpartition(":")
+    if not colon or not line.isdigit() or not path:
+        raise UsageError(f"--why {text}: write FILE:LINE, for example rover.urdf:34")
+    return path, int(line)
+
+
+def _explanation_lines(item: Explanation, path: str, robot: str) -> Iterator[str]:
+    within = f", of {item.within}" if item.within else ""
+    yield f"{path}:{item.line}:{item.column}: {item.path}{within}"
+    yield from _fact_lines(item, robot)
+    if item.made_of:
+        yield f"  made of: {' + '.join(item.made_of)}"
+    if item.source:
+        yield f"  source: {item.source}"
+
+
+def _fact_lines(item: Explanation, robot: str) -> Iterator[str]:
+    """Yield the facts about one value, indented below its place."""
+    if item.inserted:
+        yield f"  [{item.value}] gets for {robot}: {item.reason}"
+        yield from (f"    {element}" for element in item.inserted)
+        return
+    site = item.site
+    yield f"  value: {item.value!r}"
+    if site is None:
+        yield f"  claimed by no rewriter: {item.reason}"
+        return
+    by = f"[{site.section}] {site.file}:{site.line}"
+    if site.role == "keep":
+        yield f"  kept by {by}: {item.reason}"
+        return
+    form = "" if site.form == "whole" else f" ({site.form})"
+    note = f"; {site.note}" if site.note else ""
+    yield f"  claimed by {by}: {site.path} {site.role} {' '.join(site.kinds)}{form}{note}"
+    yield f"  is: {item.reason}"
+    yield f"  for {robot}: {item.new!r}" if item.new != item.value else "  stays as it is"

@@ -26,6 +26,7 @@ from multibot_rewrite.related_files.bridge import (
     GZ,
     ROS,
     SERVICE as SERVICE_ROW,
+    as_loaded,
     below,
 )
 from multibot_rewrite.related_files.yaml_text import YamlText, items, line_of, pairs
@@ -85,14 +86,9 @@ class BridgeRow(NamedTuple):
     frame: str
 
 
-def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
-    """Yield the ROS ends of the rows of a ros_gz_bridge file."""
-    yield from (it.end for it in bridge_rows(document, above))
-
-
 def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
     """Yield the rows of a ros_gz_bridge file in a namespace; one of both directions has no role."""
-    for row in items(document.root):
+    for row in items(as_loaded(document).root):
         values = {key.value: value for key, value in pairs(row)}
         # A row with one name has it on both sides (ros_gz_bridge bridge_config.cpp).
         service = values.get(SERVICE_ROW)

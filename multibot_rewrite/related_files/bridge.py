@@ -10,10 +10,12 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.base.bounded import compose_yaml
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import POSTFIX, spelled
 from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.description.rewriters.forms import NamePart
 from multibot_rewrite.description.rewriters.model_namespaces import STEM, parts_of
 from multibot_rewrite.related_files.context import Context, FileTemplate, make_template
@@ -50,6 +52,9 @@ SERVICE, FRAME = "service_name", "frame_id"
 KEYS: tuple[str, ...] = (BOTH, ROS, GZ, *TYPES, SERVICE, "direction", "publisher_queue")
 KEYS += ("subscriber_queue", "lazy", "publish_optical_frame", FRAME, "qos_profile")
 KEYS += ("gz_req_type_name", "gz_rep_type_name")
+# What the bridge of Humble reads as these (bridge_config.cpp, branch humble; not in branch jazzy).
+_OF_IGNITION = {"ign_type_name": TYPES[1], "ign_topic_name": GZ}
+_OF_IGNITION |= {"IGN_TO_ROS": DIRECTIONS[1], "ROS_TO_IGN": DIRECTIONS[2]}
 GZ_MODEL = re.compile(r"(?P<above>/?(?:world/[^/]+/)?model/)(?P<model>[^/]+)(?P<rest>/.*)?")
 # A link, joint or sensor in a gz topic.
 PART = re.compile(r"(?<=/)(link|joint|sensor)/([^/]+)")
@@ -91,6 +96,20 @@ def text_in(row: Row, key: str) -> str:
     """Return the value of a key as text; empty if it is missing or not a scalar."""
     value = row[key][1] if key in row else None
     return str(value.value) if isinstance(value, yaml.ScalarNode) else ""
+
+
+def as_loaded(document: YamlText, release: str = OF_OLD) -> YamlText:
+    """Return a file with Ignition's words that a release reads as gz words; all keep their columns."""
+    text, rows = document.text, [row_of(it) for it in items(document.root)]
+    keys = [row[it][0] for row in rows for it in row if _OF_IGNITION.get(it, it) not in row]
+    ways = [row["direction"][1] for row in rows if text_in(row, "direction") in _OF_IGNITION]
+    for node in dict.fromkeys((*keys, *ways)) if release == OF_OLD else ():
+        start, end = node.start_mark.index, node.end_mark.index
+        new = _OF_IGNITION[node.value].join(text[start:end].rsplit(node.value, 1))
+        padded = (new.ljust if node in keys else new.rjust)(end - start)
+        text = text[:start] + padded + text[end:]
+    root = document.root if text == document.text else compose_yaml(text, document.file)
+    return document._replace(text=text, root=root)
 
 
 def faults(node: yaml.Node) -> Iterator[RowFault]:
@@ -156,6 +175,7 @@ def rewrite_bridge(
     file is for. Names come out in full, so neither the bridge's namespace nor its expansion of gz names
     changes them. Raises InputError for a file that is no list of entries.
     """
+    document = as_loaded(document, context.distro)
     entries = _entries(document, context, known, above)
     own = [it for it in entries if it.own]
     shared = [it for it in entries if not it.own]
@@ -176,6 +196,7 @@ def rewrite_bridge(
 
 def read_bridge(document: YamlText, context: Context) -> NamedFile:
     """Return the names of a file, whatever its form; raises nothing."""
+    document = as_loaded(document, context.distro)
     model, nowhere = model_of(document, context), Block(0, 0, 0)
     loaded = (it for it in items(document.root) if not any(faults(it)))
     maps = (it for it in loaded if isinstance(it, yaml.MappingNode))
@@ -196,8 +217,7 @@ def _entries(
         raise refused(document, root, "the list is in brackets; start each entry with a dash")
     refuse_anchors(document)
     model = model_of(document, context)
-    assert document.root is not None
-    found = zip(document.root.value, blocks(document, document.root), strict=True)
+    found = zip(root.value, blocks(document, root), strict=True)
     return [
         _entry_of(node, block, context, model, known, above)
         for node, block in found

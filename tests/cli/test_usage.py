@@ -16,7 +16,7 @@ from refusals import said
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.cli import check, live, output, pictures, snapshot, usage, walk, why
+from multibot_rewrite.cli import check, live, output, pictures, rewrite, snapshot, usage, walk
 from multibot_rewrite.cli.report import counted_findings
 from multibot_rewrite.system.records import Parameter, System
 
@@ -33,13 +33,13 @@ def test_given_options_are_named_as_they_are_written() -> None:
 @pytest.mark.parametrize("text", ["a.urdf", ":3", "a.urdf:", "a.urdf:x", "3"])
 def test_a_line_to_explain_is_a_file_and_a_number(text: str) -> None:
     assert (
-        said(why._file_and_line, text)
+        said(rewrite._file_and_line, text)
         == f"--why {text}: write FILE:LINE, for example rover.urdf:34"
     )
 
 
 def test_a_file_with_a_colon_may_be_explained() -> None:
-    assert why._file_and_line("a:b.urdf:34") == ("a:b.urdf", 34)
+    assert rewrite._file_and_line("a:b.urdf:34") == ("a:b.urdf", 34)
 
 
 # ---------------------------------------------------------------- the source of a graph

@@ -99,6 +99,25 @@ def test_names_of_an_entry(names: str, layout: str, ros: str, gz: str) -> None:
     assert one(names, layout, "base") == (ros, gz)
 
 
+def test_a_file_with_words_of_ignition_comes_out_with_those_of_gz() -> None:
+    """ros_gz branch humble, bridge_config.cpp (parseEntry): a key of gz wins over its other."""
+    text = (
+        f"- ros_topic_name: a\n  'ign_topic_name': /model/x/a\n{TYPES}  direction: 'IGN_TO_ROS'\n"
+        f"- topic_name: /clock\n{TYPES}  ign_type_name: old\n  direction: ROS_TO_IGN\n"
+    ).replace("  gz_type", "  ign_type", 1)
+    for distro, count in (("humble", 1), ("jazzy", 0)):
+        made = rewrite_bridge(read_yaml(text.encode(), ""), context("L2")._replace(distro=distro))
+        filled = fill_bridge(made.own.template, "ns", "word", "r1")
+        (*rows,) = (yaml.safe_load(it) or [] for it in (filled, made.shared))
+        assert [*map(len, rows)] == [count, count]
+        if count:
+            types = {"ros_type_name": "a/msg/B", "gz_type_name": "gz.msgs.B"}
+            names = {"ros_topic_name": "/ns/a", "gz_topic_name": "/model/r1/a"}
+            assert rows[0] == [{**names, **types, "direction": "GZ_TO_ROS"}]
+            old = {"ign_type_name": "old", "direction": "ROS_TO_GZ"}
+            assert rows[1] == [{"topic_name": "/clock", **types, **old}]
+
+
 @pytest.mark.parametrize(
     ("entry", "code"),
     [

@@ -10,6 +10,7 @@ import yaml
 from launched_nodes import AT, launched, started
 
 from multibot_rewrite.planning.records import Run
+from multibot_rewrite.producers.ends import bridge_rows as rows_of_file
 from multibot_rewrite.producers.launch.bridges import (
     BridgedDomains,
     Row,
@@ -19,6 +20,7 @@ from multibot_rewrite.producers.launch.bridges import (
     refused_rows,
     rows_in_arguments,
 )
+from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
@@ -67,6 +69,7 @@ CONFIG = """\
 - {ros_topic_name: ros, gz_topic_name: gz, ros_type_name: a/msg/B, direction: GZ_TO_ROS}
 - {ros_topic_name: only_ros, ros_type_name: a/msg/B, direction: ROS_TO_GZ}
 - {gz_topic_name: only_gz, direction: BIDIRECTIONAL}
+- {ros_topic_name: of_humble, ign_topic_name: ign, direction: ROS_TO_IGN}
 - {ros_type_name: a/msg/B}
 """
 
@@ -82,7 +85,10 @@ def test_a_row_of_a_file_has_a_name_on_either_side() -> None:
         ("/only_ros", "subscribes", "only_ros"),
         ("/only_gz", "publishes", "only_gz"),
         ("/only_gz", "subscribes", "only_gz"),
+        ("/ign", "subscribes", "of_humble"),
     ]
+    last = [*rows_of_file(read_yaml(CONFIG.encode(), ""))][-1]
+    assert (last.inside, last.end.role, last.end.name) == ("ign", "subscribes", "/of_humble")
     for text in ("a: [", "text", "- text", ""):
         assert rows_of_text(text) == []
 

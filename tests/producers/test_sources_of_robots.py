@@ -17,7 +17,7 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
-from multibot_rewrite.producers.ends import bridge_ends, edges_off, sensor_frames, sensor_on
+from multibot_rewrite.producers.ends import bridge_rows, edges_off, sensor_frames, sensor_on
 from multibot_rewrite.producers.launch.beside_ends import prefix_of
 from multibot_rewrite.producers.launch.known_node import known_node
 from multibot_rewrite.producers.launch.records import LaunchNote
@@ -59,7 +59,7 @@ def test_the_rows_of_a_bridge_in_a_namespace() -> None:
 - gz_topic_name: only_gz
 - ros_type_name: a/msg/B
 """
-    found = [*bridge_ends(read_yaml(text, "b.yaml"), "robot1")]
+    found = [it.end for it in bridge_rows(read_yaml(text, "b.yaml"), "robot1")]
     assert [(it.role, it.name, it.type, it.place.line) for it in found] == [
         (PUBLISHES, "/robot1/scan", "a/msg/B", 1),
         (SUBSCRIBES, "/cmd", "", 2),
@@ -67,7 +67,7 @@ def test_the_rows_of_a_bridge_in_a_namespace() -> None:
         ("", "/robot1/only_gz", "", 4),
     ]
     assert {it.node for it in found} == {"/ros_gz_bridge"}
-    assert next(it.name for it in bridge_ends(read_yaml(text, "b"))) == "/scan"
+    assert next(it.end.name for it in bridge_rows(read_yaml(text, "b"))) == "/scan"
 
 
 _ON_PLATE = """<robot name="r"><link name="base"/><link name="plate"/>

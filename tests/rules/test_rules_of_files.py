@@ -175,6 +175,22 @@ def test_an_example_is_found_by_both(rule: Rule, tmp_path: Path) -> None:
     assert [int(it.split(":")[1]) for it in built] == [rule.page.line]
 
 
+@pytest.mark.parametrize(
+    ("distro", "expected"),
+    [
+        ("humble", ["MB853:6:13"]),
+        ("jazzy", ["MB855:1:3", "MB858:2:3", "MB858:4:3", "MB855:5:14"]),
+    ],
+)
+def test_a_bridge_reads_words_of_ignition_on_humble(
+    distro: str, expected: list[str], tmp_path: Path
+) -> None:
+    """ros_gz branch humble reads them (bridge_config.cpp: kIgnTypeName and more), jazzy does not."""
+    text = ROW.replace("gz_", "ign_").format("direction: IGN_TO_ROS\n  frame_id: lidar_lnk")
+    found = by_both("bridge", text, tmp_path, CODES, distro=distro)
+    assert [sorted(it) for it in found] == [sorted(expected)] * 2
+
+
 def test_a_comment_silences_both(tmp_path: Path) -> None:
     kind, text, _ = BROKEN["a misspelt parameter"]
     text = text.replace("30.0", "30.0  # urdf-lint: ignore MB110 - ours")

@@ -74,7 +74,8 @@ def windows_of_plan(plan: System, relayed: bool) -> tuple[RvizText, ...]:
         root = next(parents, next(iter(it.robot.frames), ""))
         text = _config_text([*_displays_of(shared, ""), group], [it], root)
         remaps = _tf_topics(it.robot, layout.namespaced)
-        made.append(RvizText(it.robot.name, text, remaps=remaps))
+        space = f"/{it.robot.space}" if layout.namespaced else ""
+        made.append(RvizText(it.robot.name, text, space, remaps))
     return tuple(made)
 
 

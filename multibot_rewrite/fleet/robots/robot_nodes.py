@@ -147,14 +147,9 @@ def robot_nodes(
     # A controller manager that only a parameter file has is as its usual launch files start it.
     started_here = {it.name: it for it in load_node_set(PROGRAM, file.distro) if it.name == MANAGER}
     without, findings = nodes_with(launched, node_set, given, known | started_here)
-    has_manager = any(it.name == MANAGER for it in node_set) or any(
-        it.manager for it in member.reading.nodes
-    )
-    if launched and launched.whole and launched.spawned and not has_manager:
-        # One that only has parameters is not started: the spawners wait as they do for one robot.
-        without = tuple(it for it in without if it.name != MANAGER or it.name in launched.started)
+    managed = _without_idle_manager(without, launched, node_set, member)
     source = member.source
-    standing = _without_wheel_controllers(without, given, member)
+    standing = _without_wheel_controllers(managed, given, member)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
     nodes = with_hardware(wired, source.root, source.file, known)
     whole = launched is not None and launched.whole
@@ -209,6 +204,21 @@ def _runs_of_lua(spec: RobotSpec) -> Iterator[Run]:
     for path in spec.related_files.get("lua", ()):
         run = Run("", CARTOGRAPHER, "", CARTOGRAPHER, (), UNKNOWN._replace(known=CARTOGRAPHER))
         yield run._replace(values=lua_values(text_of(spec, path), path), place=Place(path, 1))
+
+
+def _without_idle_manager(
+    nodes: tuple[NodeFacts, ...],
+    launched: Launched | None,
+    node_set: Iterable[NodeFacts],
+    member: Member,
+) -> tuple[NodeFacts, ...]:
+    """Return the nodes without a manager that only has parameters: launch files do not start it."""
+    # The spawners wait as they do for one robot.
+    runs = any(it.name == MANAGER for it in node_set)
+    runs = runs or any(it.manager for it in member.reading.nodes)
+    if runs or not (launched and launched.whole and launched.spawned):
+        return nodes
+    return tuple(it for it in nodes if it.name != MANAGER or it.name in launched.started)
 
 
 def _without_wheel_controllers(

@@ -27,7 +27,8 @@ from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote
-from multibot_rewrite.related_files.bridge import BOTH, GZ, ROS, SERVICE as SERVICE_ROW
+from multibot_rewrite.related_files.bridge import BOTH, GZ, ROS, SERVICE as SERVICE_ROW, as_loaded
+from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC, End, Node
 
 _ROW = lazy_compile(
@@ -181,7 +182,7 @@ def rows_of_text(text: str) -> tuple[Row, ...]:
     """Return the rows of a bridge file; none for another text."""
     rows: list[Row] = []
     try:
-        entries = load_yaml(text, "")
+        entries = load_yaml(as_loaded(read_yaml(text.encode(), "")).text, "")
     except InputError:
         return ()
     for entry in entries if isinstance(entries, list) else ():

@@ -102,8 +102,7 @@ def callee(function: Node) -> tuple[str, tuple[str, ...], str]:
     full = full.removeprefix("template ")
     if MESSAGE.search(full.partition("<")[0]):
         return "", (), ""
-    scope = _SCOPE.match(full)
-    full = full[scope.end() :] if scope else full
+    full = full.removeprefix((_SCOPE.match(full) or [""])[0])
     return last(full), template_arguments(full), "" if on == "<this>" else on
 
 

@@ -132,22 +132,8 @@ def _node_source(
     always = dict.fromkeys(it.name for it in named if it.name in plain and not it.asked)
     word = program.rpartition("::")[2].removesuffix(".py")
     made = [it for it in events if isinstance(it, Declared)]
-    every = dict.fromkeys(end for it in made for end in _endpoints(names, it, release))
     doubted = ("~",) * (len(plain) > 1) if not any(it.space for it in named) else _RELATIVE
-    # Each end once, and without a condition where it is there without one, too.
-    surest: dict[tuple[str, ...], Endpoint] = {}
-    for it in every:
-        # Its name is resolved in a namespace or below a node that is not known for sure.
-        is_doubted = doubted and it.name.startswith(doubted)
-        is_doubted = is_doubted or (doubted == _RELATIVE and it.name[:1] != "/")
-        end = it._replace(when=PERHAPS) if is_doubted else it
-        key = (end.kind, end.role, end.name, end.type, end.parameter)
-        other = surest.setdefault(key, end)
-        if other.when and not end.when:
-            surest[key] = end
-        elif other.when and other.when != end.when:
-            surest[key] = other._replace(when=PERHAPS)
-    ends = tuple(surest.values())
+    ends = _each_once((end for it in made for end in _endpoints(names, it, release)), doubted)
     params = tuple(_params(names, events, read.source.values))
     sends, of_sends = _sent_transforms(names, events)
     both = {it.parameter: it for it in (*_frames(names, events), *of_sends)}
@@ -179,6 +165,25 @@ def _node_source(
         together=tuple(always) if len(always) > 1 else (),
     )
     return NodeSource(facts, params, named_frames, read.files)
+
+
+def _each_once(ends: Iterable[Endpoint], doubted: tuple[str, ...]) -> tuple[Endpoint, ...]:
+    """Return each endpoint once, without a condition if it is there without one, too.
+
+    The names of those that begin with one of ``doubted`` are not sure: they are resolved in a namespace
+    or below a node that is not known for sure."""
+    surest: dict[tuple[str, ...], Endpoint] = {}
+    for it in dict.fromkeys(ends):
+        is_doubted = doubted and it.name.startswith(doubted)
+        is_doubted = is_doubted or (doubted == _RELATIVE and it.name[:1] != "/")
+        end = it._replace(when=PERHAPS) if is_doubted else it
+        key = (end.kind, end.role, end.name, end.type, end.parameter)
+        other = surest.setdefault(key, end)
+        if other.when and not end.when:
+            surest[key] = end
+        elif other.when and other.when != end.when:
+            surest[key] = other._replace(when=PERHAPS)
+    return tuple(surest.values())
 
 
 def _at(place: Place) -> str:

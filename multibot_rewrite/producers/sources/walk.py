@@ -387,7 +387,6 @@ def _events_of_base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[
     keys = dict(named)
     called = texts[0] if texts else keys.get("node_name", keys.get("name", ANY))
     space = texts[1] if len(texts) > 1 and "<" not in texts[1] else keys.get("namespace", "")
-    # Without global arguments no rule of the process reaches it.
     asked = spot.asked or keys.get("use_global_arguments", "")
     yield Named(called, space, asked, call.place)
 

@@ -256,7 +256,12 @@ OUTSIDE = declare(
     "section-outside-of-bringup",
     ERROR,
     formats=("params",),
-    options={"node_sets": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
+    options={
+        "node_sets": ["nav2", "rviz"],
+        "shared_nodes": ["rviz2"],
+        "params_style": "bringup",
+        "layout": "both",
+    },
 )
 
 

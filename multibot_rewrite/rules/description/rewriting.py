@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 
 from multibot_rewrite.base.findings.finding import NOTE, SRDF, URDF, WARNING, rule
@@ -16,8 +16,6 @@ from multibot_rewrite.description.checks.mentions import (
 )
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.unknown import unknown_parts
-from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import slot_values
 from multibot_rewrite.related_files.named_file import EVERY
 from multibot_rewrite.rules.facts.memo import memoized
@@ -34,14 +32,6 @@ def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
     yield from map(as_problem, mentions)
 
 
-Audit = Callable[[Inventory, Tree], Iterator[Problem]]
-
-
-def _audit_problems(audit: Audit, subject: Subject) -> Iterator[Problem]:
-    """Yield what a check of the plugin definitions finds in a document."""
-    return audit(subject.inventory, subject.tree)
-
-
 @memoized
 def _unknown_parts(subject: Subject) -> tuple[Problem, ...]:
     return tuple(unknown_parts(subject.inventory, subject.tree))
@@ -56,13 +46,15 @@ unknown_plugin = rule("MB902", "unknown-plugin", NOTE)(partial(_unknown_of_code,
 
 unknown_hardware_class = rule("MB903", "unknown-hardware", NOTE)(partial(_unknown_of_code, "MB903"))
 
-parameter_of_ros_1 = rule("MB904", "parameter-of-ros-1", NOTE)(partial(_audit_problems, other_ros))
+parameter_of_ros_1 = rule("MB904", "parameter-of-ros-1", NOTE)(
+    lambda subject: other_ros(subject.inventory, subject.tree)
+)
 
 row_of_another_release = rule(
     "MB905",
     "row-of-another-release",
     NOTE,
     options={"definitions": ["my.vocab"], "distro": "lyrical"},
-)(partial(_audit_problems, other_releases))
+)(lambda subject: other_releases(subject.inventory, subject.tree))
 
 included_model = rule("MB906", "included-model", NOTE)(partial(_unknown_of_code, "MB906"))

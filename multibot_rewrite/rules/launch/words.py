@@ -145,7 +145,6 @@ def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
         named |= {*names} if node.name else set()
         for it in (one for one in node.parameters if one.file and names):
             readers[it.file, it.text] |= dict.fromkeys(names)
-    known = built_in(launched.release).nodes
     found: dict[Place, tuple[str, list[str]]] = {}
     for (file, text), own in readers.items():
         names = [*own]
@@ -153,7 +152,7 @@ def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
             sections = raw_sections(document_of(file, text))
             by_word = lists_by_key((last_word(it.path), it) for it in sections)
             wild = [it.path for it in sections if "*" in it.path]
-            unread = [it for it in by_word if it not in nodes and it not in known]
+            unread = sorted({*by_word} - {*nodes} - {*built_in(launched.release).nodes})
             reaching = any(is_for(path, node) for path in wild for node in every)
             lost = named.issuperset(names) and not (reaching or by_word.keys() & nodes.keys())
             if sections and lost:

@@ -167,13 +167,11 @@ _COMMAND, _STATE = "command_interface", "state_interface"
 _NUMBERS = frozenset(("min", "max", "initial_value"))
 # Of a limit; numbers are rounded.
 _SLACK = 1.02
-_BOOL = "(?i:true|false)", "true or false"
 # Attribute -> how it is read (component_parser.cpp, lexical_casts.cpp, hardware_info.hpp).
 _READ_AS = {
     "rw_rate": ("[0-9]+", "a whole number of hertz"),
     "thread_priority": ("[0-9]+", "a whole number"),
-    "is_async": _BOOL,
-    "mimic": _BOOL,
+    **dict.fromkeys(("is_async", "mimic"), ("(?i:true|false)", "true or false")),
     "data_type": ("double|bool|float32|u?int(8|16|32)", "double, bool, float32, int32 or uint8"),
 }
 
@@ -184,11 +182,12 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
         parts = [*system.iterchildren("joint", "gpio", "sensor")]
         interfaces = [it for part in parts for it in part.iterchildren(_COMMAND, _STATE)]
         for it in (system, *parts, *interfaces):
-            for name, text in it.items():
-                pattern, words = _READ_AS.get(name, (".*", ""))
+            for name, (pattern, words) in _READ_AS.items():
+                text = it.get(name, "$")
                 if "$" not in text and not re.fullmatch(pattern, text.strip()):
                     message = f"{name} is {text!r}, not {words}"
-                    yield Problem(it, message, name, level=NOTE if since_jazzy(subject) else "")
+                    level = NOTE if since_jazzy(subject) else ""
+                    yield Problem(it, message, name, f"write {words}", level=level)
         for it in (param for one in interfaces for param in one.iterchildren("param")):
             text = text_of(it)
             if it.get("name") in _NUMBERS and "$" not in text and number(text) is None:
