@@ -275,7 +275,9 @@ ELSEWHERE = (
          "MG316 no node sends /robot1/scan, and one sends /robot2/scan; start what sends it for"
          " the other robot"),
         (MANAGER, LISTED.format("", LEFT_OUT)),
-        (MANAGER, "/robot1/amlc", LISTED.format("; /robot1/amlc runs", LEFT_OUT)),
+        (MANAGER, "/robot1/amlc",
+         f"{LISTED.partition('{}')[0]}; /robot1/amlc runs; write /robot1/amlc for /robot1/amcl in"
+         " node_names of /robot1/lifecycle_manager"),
         (MANAGER, "/amcl",
          LISTED.format("; /amcl runs", " in the namespace, with -r __ns:=/robot1")),
         (f"/own calls /door {DOOR}", "/x",
@@ -289,8 +291,10 @@ ELSEWHERE = (
          "MG304 calls /robot1/drive/reset, which no node serves; start the node that serves it, or"
          " leave out what calls it"),
         (f"/fleet calls /robot1/drive/reset {TRIGGER}", "/robot1/x", "/robot2/drive", ""),
-        # What it serves itself it does not call; many have a service of such a type.
-        (f"/own calls /door {TRIGGER}", "/x", ""),
+        # Many have a service of such a type: another one is not what is meant.
+        (f"/own calls /door {TRIGGER}", f"/x serves /gate {TRIGGER}",
+         "MG304 calls /door, which no node serves; start the node that serves it, or leave out"
+         " what calls it"),
         ("/robot1/a holds device port 1", "/robot1/a holds device ip 2",
          "/robot2/b holds device port 1", "/robot2/b holds device ip 2",
          f"{SAME}port 1, ip 2; one device has one driver: give each robot its own"),
@@ -481,7 +485,7 @@ NAV = "/robot1/controller_server"
          f"/robot2/a subscribes /robot2/halt {STRING}",
          f"/robot2/button publishes /robot1/halt {STRING}",
          f"MG311 error /robot2/button: publishes /robot1/halt, a name of robot1; {NAMES_ROBOT1};"
-         " nobody else publishes /robot1/halt: start one for robot1 too"),
+         " no other node publishes /robot1/halt: start one for robot1 too"),
         (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/cmd_vel {TWIST}",
          "MG312 warning /robot1/teleop: publishes /robot1/cmd_vel, and so does"
          f" /robot1/controller_server; /robot1/driver obeys both; {CHOOSE}"),

@@ -255,7 +255,7 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             alone = nodes_of(ends.publishers) == (node,) and name not in seen.orders
             if rules and alone and not has_likes_of(seen, owner, node):
                 hint = names_another(robot, owner).hint
-                cause = Cause(f"{hint}; nobody else publishes {name}: start one for {owner} too")
+                cause = Cause(f"{hint}; no other node publishes {name}: start one for {owner} too")
             yield command_from_another_robot.finding(
                 message, **cause._asdict(), robot=robot, node=node, names=(name,)
             )
