@@ -75,8 +75,8 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "names": lambda seen, it: it.names,
     "own names": lambda seen, it: (f"{seen.frame_robot(x) or it.robot} {x}" for x in it.names),
     "plain names": lambda seen, it: map(seen.plain, it.names),
-    "frames": lambda seen, it: map(seen.plain_frame, it.names),
-    "bare frames": lambda seen, it: map(seen.plain_frame, map(seen.plain_frame, it.names)),
+    # A prefix may be there twice.
+    "frames": lambda seen, it: map(seen.plain_frame, map(seen.plain_frame, it.names)),
     "users": lambda seen, it: (end.node for end in _ends(seen, it.names)),
     "senders": lambda seen, it: (x.node for x in _ends(seen, it.names) if x.role == PUBLISHES),
     "frame senders": lambda seen, it: (x for name in it.names for x in _frame_senders(seen)[name]),
@@ -236,12 +236,14 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
     """Return the findings; an unplanned node is named in the first one about it or its likes."""
     every = [*found]
     nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
+    likes = lists_by_key((seen.plain(one), one) for one in nodes)
     gone: set[int] = set()
     for at, it in enumerate(every) if nodes else ():
         users = _users(seen, it) if it.level in (ERROR, WARNING) and it.code != _UNPLANNED else ()
         plain = {seen.plain(one) for one in users if one in nodes and nodes[one] not in gone}
-        if left := [one for one in nodes if seen.plain(one) in plain and nodes[one] not in gone]:
-            gone.update(map(nodes.__getitem__, left))
+        ats = sorted({nodes[like] for one in plain for like in likes[one]} - gone)
+        if left := [every[one].node for one in ats]:
+            gone.update(ats)
             verb = "is" if len(left) == 1 else "are"
             hint = f"{it.hint}; {shorten(left, SEVERAL)} {verb} not in the plan"
             every[at] = it._replace(hint=hint)

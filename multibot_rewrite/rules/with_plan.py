@@ -62,10 +62,10 @@ def one_for_a_cause(
     new = {*unplanned_nodes(plan, seen)} - {*matches(plan, seen).values()}
     kept = []
     for at, it in enumerate(left):
+        is_lost = at not in causes and _is_absence(it, rules)
+        given = (x for x in unplanned_ends_of(seen, it) if x.role in GIVES) if is_lost else ()
         # What a node gives that is no planned one is of that node's making.
-        own = new & {x.node for x in unplanned_ends_of(seen, it) if x.role in GIVES}
-        is_lost = at not in causes and not own and _is_absence(it, rules)
-        names = {*it.names} if is_lost else set()
+        names = set() if not is_lost or any(x.node in new for x in given) else {*it.names}
         if not (names & lost or (names and names <= loose)):
             kept.append(said.get(at, it))
     every = {*unexplained([*kept, *by_plan])}

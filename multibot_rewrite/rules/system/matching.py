@@ -74,7 +74,8 @@ def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
     message, cause = _difference(ends.name, others[0].node, asked, given)
     stamped = _by_a_switch(asked.keys(), given.keys())
     both, node = (*others, *own), own[0].node
-    usual = _as_another_robot(seen, ends) if stamped else ""
+    other = _bare(seen).get((ends.kind, seen.plain(ends.name))) if stamped else None
+    usual = f": one is stamped, and {other.name} is {other.type}" if other else ""
     switched = Cause(usual) if usual or not stamped else to_stamp(seen, both)
     level = WARNING if is_viewer(node) else ERROR
     if stale := _stale(seen, both):
@@ -86,14 +87,15 @@ def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
     )  # fmt: skip
 
 
-def _as_another_robot(seen: Index, ends: Ends) -> str:
-    """Return what another robot has at the same name, if nothing is stamped there; or empty."""
-    likes = (seen.of_robot(it, ends.kind, seen.plain(ends.name)) for it in seen.robots)
-    for it in (it for it in likes if it and it.name != ends.name):
-        types = {one.type for one in (*it.publishers, *it.subscribers)}
-        if it.publishers and it.subscribers and types == {it.type.removesuffix(STAMPED)}:
-            return f": on {it.name} it is {it.type}"
-    return ""
+@once
+def _bare(seen: Index) -> Mapping[tuple[str, str], Ends]:
+    """Return the robots' topics on which all is of one type without a stamp, by kind and plain name."""
+    likes = (it for it in seen.topics if seen.robot(it.name) and it.publishers and it.subscribers)
+    return {
+        (it.kind, seen.plain(it.name)): it
+        for it in likes
+        if {x.type for x in (*it.publishers, *it.subscribers)} == {it.type.removesuffix(STAMPED)}
+    }
 
 
 def _stale(seen: Index, ends: Iterable[End]) -> str:
