@@ -308,6 +308,10 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
         return f"{kind}/{spell(context.names, kind, name) if known else name}"
 
     if found and found[0].lstrip("/") not in context.names.given:
+        # A lidar's points are below the topic that the description names.
+        above, _, last = name.rpartition("/")
+        if above.lstrip("/") in context.names.given:
+            return f"{gz_topic(context, above, gz_type)}/{last}"
         return found["above"] + MODEL_SLOT + PART.sub(part, rest)
     bare = name.strip("/")
     if bare in WORLD or bare.startswith("world/"):

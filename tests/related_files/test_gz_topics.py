@@ -57,6 +57,16 @@ def test_a_sensor_sends_below_the_topic_that_the_description_gives(ending: str) 
     assert gz_topic(context, f"/eye/{ending}") == new
 
 
+def test_points_are_below_a_topic_of_a_model_that_the_description_gives() -> None:
+    """gz-sensors GpuLidarSensor.cc adds /points to the topic, whatever words that has."""
+    context = setting(L2)
+    given = frozenset({"model/rover/lidar"})
+    context = context._replace(names=context.names._replace(given=given))
+    named = gz_topic(context, "/model/rover/lidar")
+    assert MODEL_SLOT not in named
+    assert gz_topic(context, "/model/rover/lidar/points") == f"{named}/points"
+
+
 @pytest.mark.parametrize("topic", ["/clock", "/stats", "clock"])
 def test_topics_of_the_simulator_are_so_whatever_robots_share(topic: str) -> None:
     assert gz_topic(setting(L2, shared_topics=()), topic) == topic
