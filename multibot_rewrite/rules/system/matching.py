@@ -61,11 +61,7 @@ def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
     """Return the planned types of each name, where they are known."""
     found: dict[tuple[str, str], set[str]] = defaultdict(set)
     for end in seen.expected.by_key.values() if seen.expected else ():
-        types = found[end.kind, end.name]
-        if end.also:
-            types.update(end.also)
-        if end.type:
-            types.add(end.type)
+        found[end.kind, end.name].update({*end.also, end.type} - {""})
     return found
 
 
