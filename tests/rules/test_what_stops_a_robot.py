@@ -121,6 +121,12 @@ def test_a_dead_lidar_of_a_single_robot(space: str) -> None:
         told = diagnose(system._replace(environment=around)).findings
         assert [(it.code, it.level) for it in told] == [("MG326", level)]
     assert codes(*lines, *sent, f"frame_id laser on {name}") == []
+    # No laser is so slow by itself.
+    (slow,) = found(*lines, *sent, f"frame_id laser on {name} at 0.3 Hz")
+    assert (slow.code, slow.level, slow.message) == (
+        "MG326", "warning", f"publishes {name} at 0.3 Hz"
+    )  # fmt: skip
+    assert codes(*lines, *sent, f"frame_id laser on {name} at 5 Hz") == []
     # Where nothing comes again and again nobody listened for long.
     assert codes(*lines, sent[0], sent[1].removesuffix(" at 10 Hz")) == []
 

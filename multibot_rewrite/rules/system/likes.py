@@ -274,6 +274,10 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
                 hint += ", and the processor time that it has"
                 # So seldom a scan is as good as none.
                 dead = dead and rate < _SELDOM
+            elif rate and rate < _SELDOM and dead and words.is_of_one_sensor(type_):
+                # Its kind never comes so seldom.
+                said, dead = f" at {rate:.1f} Hz", False
+                hint += ", and the processor time that it has"
             elif rate is None and robot in robots and (most >= 0 or (alone and robot in flows)):
                 said = ", on which no message came" + (f"; {best} has some" if most >= 0 else "")
             if said:
