@@ -11,7 +11,7 @@ from typing import NamedTuple, cast
 
 from lxml.etree import _Element
 
-from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.base.releases import OF_OLD, has_release
 from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
@@ -88,7 +88,7 @@ class BridgeRow(NamedTuple):
 
 def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
     """Yield the rows of a ros_gz_bridge file in a namespace; one of both directions has no role."""
-    for row in items(as_loaded(document).root):
+    for row in items(as_loaded(document, OF_OLD).root):
         values = {key.value: value for key, value in pairs(row)}
         # A row with one name has it on both sides (ros_gz_bridge bridge_config.cpp).
         service = values.get(SERVICE_ROW)

@@ -98,7 +98,7 @@ def text_in(row: Row, key: str) -> str:
     return str(value.value) if isinstance(value, yaml.ScalarNode) else ""
 
 
-def as_loaded(document: YamlText, release: str = OF_OLD) -> YamlText:
+def as_loaded(document: YamlText, release: str) -> YamlText:
     """Return a file with Ignition's words that a release reads as gz words; all keep their columns."""
     text, rows = document.text, [row_of(it) for it in items(document.root)]
     keys = [row[it][0] for row in rows for it in row if _OF_IGNITION.get(it, it) not in row]

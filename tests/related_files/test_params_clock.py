@@ -51,6 +51,6 @@ def test_the_clock_of_the_fleet_is_that_of_its_files(
     assert "# of all" in made
     sections = {key: it.get("ros__parameters", {}) for key, it in yaml.safe_load(made).items()}
     found = {key: it["use_sim_time"] for key, it in sections.items() if "use_sim_time" in it}
-    # A launch fills the placeholder; RViz is for all robots.
-    kept = {f"/{robot}/bt_navigator": "$(var use_sim_time)", "rviz2": False}
+    # A launch fills the placeholder; each robot has an RViz.
+    kept = {f"/{robot}/bt_navigator": "$(var use_sim_time)", f"/{robot}/rviz2": every}
     assert found == {"/**": every, f"/{robot}/amcl": own, **kept}

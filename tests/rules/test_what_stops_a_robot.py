@@ -131,6 +131,21 @@ def test_a_dead_lidar_of_a_single_robot(space: str) -> None:
     assert codes(*lines, sent[0], sent[1].removesuffix(" at 10 Hz")) == []
 
 
+@pytest.mark.parametrize("space", ["/robot1", ""])
+def test_what_filters_make_is_no_source(space: str) -> None:
+    """An EKF and navsat_transform wait for the drive, each with the odometry of the other."""
+    lines = [
+        f"{space}/ekf subscribes {space}/wheel/odom {ODOM}",
+        f"{space}/ekf subscribes {space}/odometry/gps {ODOM}",
+        f"{space}/ekf publishes {space}/odometry/filtered {ODOM}",
+        f"{space}/navsat subscribes {space}/odometry/filtered {ODOM}",
+        f"{space}/navsat publishes {space}/odometry/gps {ODOM}",
+    ]
+    (gone,) = found(*lines)
+    assert (gone.code, gone.level, gone.names) == ("MG322", "error", (f"{space}/wheel/odom",))
+    assert codes(*lines, f"{space}/drive publishes {space}/wheel/odom {ODOM}") == []
+
+
 @pytest.mark.parametrize("frame", ["/laser", "/robot1/laser"])
 def test_tf2_refuses_to_look_up_a_frame_with_a_slash_in_front(frame: str) -> None:
     lines = [

@@ -21,13 +21,20 @@ import yaml
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.releases import OF_OLD
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote
-from multibot_rewrite.related_files.bridge import BOTH, GZ, ROS, SERVICE as SERVICE_ROW, as_loaded
+from multibot_rewrite.related_files.bridge import (
+    BOTH,
+    GZ,
+    ROS,
+    SERVICE as SERVICE_ROW,
+    as_loaded,
+)
 from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC, End, Node
 
@@ -182,7 +189,7 @@ def rows_of_text(text: str) -> tuple[Row, ...]:
     """Return the rows of a bridge file; none for another text."""
     rows: list[Row] = []
     try:
-        entries = load_yaml(as_loaded(read_yaml(text.encode(), "")).text, "")
+        entries = load_yaml(as_loaded(read_yaml(text.encode(), ""), OF_OLD).text, "")
     except InputError:
         return ()
     for entry in entries if isinstance(entries, list) else ():

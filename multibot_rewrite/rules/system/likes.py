@@ -328,12 +328,16 @@ def _loader(seen: Index, node: str, robot: str) -> str:
 def _never_sent(seen: Index) -> Iterator[Finding]:
     """Report a laser, an IMU or odometry of a running robot that sends none of its kind."""
     body = [it for it in seen.topics if words.is_of_a_body(it.type) and it.type != words.JOINTS]
-    sent = {(seen.robot(it.name), it.type) for it in body if it.publishers}
+    # A filter makes its data of others of their type.
+    read = {(end.node, it.type) for it in body for end in it.subscribers}
+    made = ((it, end.node) for it in body for end in it.publishers)
+    sent = {(seen.robot(it.name), it.type) for it, node in made if (node, it.type) not in read}
     for it in body if seen.is_observed and not seen.expected else ():
         robot = seen.robot(it.name)
         readers = [end for end in at_work(it.subscribers) if seen.robot(end.node) == robot]
         nodes = nodes_of(end for end in readers if end.sure == RUNS and not chooses(end.node))
-        if nodes and (robot, it.type) not in sent and not done_elsewhere(seen, it):
+        missed = nodes and not it.publishers and (robot, it.type) not in sent
+        if missed and not done_elsewhere(seen, it):
             yield driver_missing.finding(
                 f"no node sends {it.name}, read by {shorten(nodes, SEVERAL)}",
                 "start its driver; its log says why it ended", robot=robot, names=(it.name,),

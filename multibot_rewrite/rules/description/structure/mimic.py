@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, rule
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import SHOWN, shorten
 from multibot_rewrite.description.checks.links_and_joints import (
     BOUNDED,
@@ -169,10 +169,13 @@ _NUMBERS = frozenset(("min", "max", "initial_value"))
 _SLACK = 1.02
 # Attribute -> how it is read (component_parser.cpp, lexical_casts.cpp, hardware_info.hpp).
 _READ_AS = {
-    "rw_rate": ("[0-9]+", "a whole number of hertz"),
-    "thread_priority": ("[0-9]+", "a whole number"),
-    **dict.fromkeys(("is_async", "mimic"), ("(?i:true|false)", "true or false")),
-    "data_type": ("double|bool|float32|u?int(8|16|32)", "double, bool, float32, int32 or uint8"),
+    "rw_rate": (lazy_compile("[0-9]+"), "a whole number of hertz"),
+    "thread_priority": (lazy_compile("[0-9]+"), "a whole number"),
+    **dict.fromkeys(("is_async", "mimic"), (lazy_compile("(?i:true|false)"), "true or false")),
+    "data_type": (
+        lazy_compile("double|bool|float32|u?int(8|16|32)"),
+        "double, bool, float32, int32 or uint8",
+    ),
 }
 
 
@@ -184,7 +187,7 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
         for it in (system, *parts, *interfaces):
             for name, (pattern, words) in _READ_AS.items():
                 text = it.get(name, "$")
-                if "$" not in text and not re.fullmatch(pattern, text.strip()):
+                if "$" not in text and not pattern.fullmatch(text.strip()):
                     message = f"{name} is {text!r}, not {words}"
                     level = NOTE if since_jazzy(subject) else ""
                     yield Problem(it, message, name, f"write {words}", level=level)
