@@ -84,7 +84,7 @@ setup(name=package_name, data_files=[
 def test_a_share_folder_is_as_data_files_say(tmp_path: Path) -> None:
     files = ("config/nav.yaml", "top.yaml", "launch/b.launch.py", "launch/c.txt", "../beside.txt")
     source = write(tmp_path / "src", *files)
-    (source / "setup.py").write_text(SETUP)
+    (source / "setup.py").write_text(SETUP + "a = 'x'\n" + "a = a + a\n" * 99)
     link_share("mine", str(source), str(tmp_path / "share"))
     there = {it.name for it in (tmp_path / "share").iterdir()}
     assert there == {"b.launch.py", "config", "launch", "params", "setup.py", "top.yaml"}

@@ -148,10 +148,9 @@ def robot_nodes(
     started_here = {it.name: it for it in load_node_set(PROGRAM, file.distro) if it.name == MANAGER}
     without, findings = nodes_with(launched, node_set, given, known | started_here)
     managed = _without_idle_manager(without, launched, node_set, member)
-    source = member.source
     standing = _without_wheel_controllers(managed, given, member)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
-    nodes = with_hardware(wired, source.root, source.file, known)
+    nodes = with_hardware(wired, member.source.root, member.source.file, known)
     whole = launched is not None and launched.whole
     of_srdf = () if whole else tuple(_srdf_nodes(spec, nodes, known))
     nodes = (*nodes, *of_srdf)

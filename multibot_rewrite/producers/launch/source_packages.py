@@ -34,6 +34,8 @@ _RULE = lazy_compile(
 )
 _PROJECT = lazy_compile(r"\$\{(?:PROJECT_NAME|CMAKE_PROJECT_NAME)\}")
 _PYTHON = lazy_compile(r"ament_python_install_package\(\s*(\w+)")
+# No longer path is one: a setup.py may double a text again and again.
+_LONGEST = 4096
 # The folder of links to packages, below that of what is made for a launch file.
 SOURCES = "sources"
 PREFIXES = "AMENT_PREFIX_PATH"
@@ -167,7 +169,7 @@ def _by_setup(name: str, folder: str) -> Iterator[tuple[str, str]]:
         read = _Setup(folder, {})
         for it in ast.walk(ast.parse(Path(folder, "setup.py").read_text("utf-8"))):
             if isinstance(it, ast.Assign) and isinstance(it.targets[0], ast.Name):
-                read.texts[it.targets[0].id] = read.text(it.value)
+                read.texts[it.targets[0].id] = read.text(it.value)[:_LONGEST]
             elif isinstance(it, ast.Tuple) and len(it.elts) == 2:
                 to = read.text(it.elts[0]).strip("/")
                 for own in read.files(it.elts[1]) if f"{to}/".startswith(f"share/{name}/") else ():
