@@ -105,6 +105,15 @@ def test_the_target_of_a_rule(layout: str, kind: str, name: str, target: str) ->
     assert target_of(name, kind, "a", make_naming(layout)) == target
 
 
+@pytest.mark.parametrize("end", ["", "/compressed", "/_action/send_goal"])
+def test_the_parts_of_what_is_shared_are_shared(end: str) -> None:
+    """An action's parts and an image's transports are found from the one name alone."""
+    naming = make_naming("both")._replace(shared_topics=frozenset({"above"}))
+    assert target_of(f"above{end}", "topic", "a", naming) == f"/above{end}"
+    assert target_of(f"/above{end}", "topic", "a", naming) == ""
+    assert target_of(f"/below{end}", "topic", "a", naming) == f"below{end}"
+
+
 XML = """<robot name="r"><link name="a/base"/><link name="a/wheel"/><link name="a/lidar"/>
 <joint name="j" type="continuous"><parent link="a/base"/><child link="a/wheel"/></joint>
 <joint name="k" type="fixed"><parent link="a/base"/><child link="a/lidar"/></joint>
